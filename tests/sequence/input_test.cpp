@@ -99,7 +99,7 @@ TEST_F(Input, MotionOfOtherNamesNeedsItsMeaning) {
 TEST_F(Input, ChannelsAreNamedInMessages) {
   const ImageHeader header = header_of(frame(1));
   ChannelNames names;
-  names[InputPlane::kColour] = colour_channels_in(header, "ViewLayer.Combined");
+  names[InputPlane::kColour] = choose_picture("f", header, {.layer = "ViewLayer.Combined"})->channels;
   const auto places = find_channels("f.0001.exr", header, names);
   ASSERT_FALSE(places.ok());
   EXPECT_EQ(places.status().message(),

@@ -41,9 +41,11 @@ class Layers : public testing::SequenceTest {
 
 TEST_F(Layers, ALayerOfManyIsTakenAndNamedWhereItIsMissing) {
   write_channels(input(1), {24, 14}, kBlenderChannels);
-  resolve_to("u", fmt::format("--colour ViewLayer.Combined {}", kSame));
+  resolve_to("u", fmt::format("--colour ViewLayer.DiffCol {}", kSame));
+  EXPECT_EQ(channel(output(1), "G"), channel(input(1), "ViewLayer.DiffCol.G"));
+  resolve_to("u", kSame);  // by the usual name of a picture
   EXPECT_EQ(channel(output(1), "G"), channel(input(1), "ViewLayer.Combined.G"));
-  expect_refused(fmt::format("'{{}}/f.%04d.exr' --out '{{}}/o/u.%04d.exr' {}", kSame), 1,
+  expect_refused(fmt::format("'{{}}/f.%04d.exr' --out '{{}}/o/u.%04d.exr' --colour C {}", kSame), 1,
                  "; --colour takes a layer of it: ViewLayer.Combined, ViewLayer.DiffCol");
 }
 
@@ -95,10 +97,11 @@ TEST_F(TruthLayers, TruthMayHaveManyLayers) {
   EXPECT_TRUE(
       scores("--colour ViewLayer.Combined --truth-colour ViewLayer.Combined")["psnr_linear"].is_null());
   EXPECT_LT(scores("--colour ViewLayer.Combined --truth-colour ViewLayer.DiffCol")["psnr_linear"], 20);
-  const auto result = resolve(
-      fmt::format("'{{}}/f.%04d.exr' --truth '{{}}/t.%04d.exr' --colour ViewLayer.Combined -q {}", kSame));
+  const auto result =
+      resolve(fmt::format("'{{}}/f.%04d.exr' --truth '{{}}/t.%04d.exr' --truth-colour C -q -n {}", kSame));
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_NE(result.err.find("truth '" + truth(1) + "' has no channel 'R'"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("truth '" + truth(1) + "' has no channel 'C.R'"), std::string::npos)
+      << result.err;
   EXPECT_NE(result.err.find("; --truth-colour takes a layer of it: ViewLayer.Combined, ViewLayer.DiffCol"),
             std::string::npos)
       << result.err;

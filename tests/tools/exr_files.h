@@ -5,11 +5,13 @@
 #include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineOutputFile.h>
+#include <ImfDeepScanLineOutputPart.h>
 #include <ImfFrameBuffer.h>
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <ImfTiledOutputFile.h>
 #include <ImfTiledOutputPart.h>
 
@@ -31,6 +33,13 @@ struct ExrPart {
   std::vector<float> pixels;          // pixels of the data window, channels interleaved
   int tile = 0;                       // side of the tiles; 0: scanlines
   std::string compression = "zip";
+  std::string view = "";
+  std::vector<std::string> views = {};  // the attribute multiView
+  bool mipmaps = false;                 // with tiles
+  bool deep = false;                    // one sample of 1 a pixel; only among several parts
+  int sampling = 1;                     // of the last channel, both ways
+
+  int sampling_of(std::size_t channel) const { return channel + 1 == channels.size() ? sampling : 1; }
 };
 
 // A part whose data window is its display window, all channels half.
@@ -54,10 +63,16 @@ inline Imf::Header header_of(const ExrPart& part, bool of_several) {
   header.compression() = static_cast<Imf::Compression>(
       std::find(std::begin(kCompressions), std::end(kCompressions), part.compression) - kCompressions);
   for (std::size_t c = 0; c < part.channels.size(); ++c)
-    header.channels().insert(part.channels[c], Imf::Channel(part.types[c]));
-  if (part.tile > 0) header.setTileDescription(Imf::TileDescription(part.tile, part.tile));
+    header.channels().insert(part.channels[c],
+                             Imf::Channel(part.types[c], part.sampling_of(c), part.sampling_of(c)));
+  const auto mode = part.mipmaps ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL;
+  if (part.tile > 0) header.setTileDescription(Imf::TileDescription(part.tile, part.tile, mode));
   if (of_several) header.setType(part.tile > 0 ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
+  if (part.deep) header.setType(Imf::DEEPSCANLINE);
+  if (part.deep) header.compression() = Imf::ZIPS_COMPRESSION;
   if (!part.name.empty()) header.setName(part.name);
+  if (!part.view.empty()) header.setView(part.view);
+  if (!part.views.empty()) Imf::addMultiView(header, part.views);
   return header;
 }
 
@@ -80,8 +95,9 @@ void with_frame_buffer(const ExrPart& part, Write write) {
   Imf::FrameBuffer buffer;
   for (std::size_t c = 0; c < count; ++c) {
     char* first = texels.data() + c * 4 - part.data.x * stride - part.data.y * row;
-    buffer.insert(part.channels[c], Imf::Slice(part.types[c], first, static_cast<std::size_t>(stride),
-                                               static_cast<std::size_t>(row)));
+    buffer.insert(part.channels[c],
+                  Imf::Slice(part.types[c], first, static_cast<std::size_t>(stride),
+                             static_cast<std::size_t>(row), part.sampling_of(c), part.sampling_of(c)));
   }
   write(buffer);
 }
@@ -98,8 +114,26 @@ template <typename Tiles>
 void write_tiles(Tiles& file, const ExrPart& part) {
   with_frame_buffer(part, [&](const Imf::FrameBuffer& buffer) {
     file.setFrameBuffer(buffer);
-    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+    for (int level = 0; level < file.numLevels(); ++level)
+      file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
   });
+}
+
+// One sample a pixel.
+template <typename Scanlines>
+void write_deep(Scanlines& file, Extent extent, const std::vector<std::string>& channels) {
+  const auto pixels = static_cast<std::size_t>(extent.area()), width = static_cast<std::size_t>(extent.width);
+  std::vector<unsigned> counts(pixels, 1);
+  half one(1);
+  std::vector<half*> samples(pixels, &one);
+  Imf::DeepFrameBuffer buffer;
+  buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()),
+                                           sizeof counts[0], sizeof counts[0] * width));
+  for (const std::string& name : channels)
+    buffer.insert(name, Imf::DeepSlice(Imf::HALF, reinterpret_cast<char*>(samples.data()), sizeof samples[0],
+                                       sizeof samples[0] * width, sizeof one));
+  file.setFrameBuffer(buffer);
+  file.writePixels(extent.height);
 }
 
 inline void write_exr_parts(const std::string& path, const std::vector<ExrPart>& parts) {
@@ -118,6 +152,9 @@ inline void write_exr_parts(const std::string& path, const std::vector<ExrPart>&
       if (parts[i].tile > 0) {
         Imf::TiledOutputPart tiles(file, static_cast<int>(i));
         write_tiles(tiles, parts[i]);
+      } else if (parts[i].deep) {
+        Imf::DeepScanLineOutputPart deep(file, static_cast<int>(i));
+        write_deep(deep, parts[i].data.extent, parts[i].channels);
       } else {
         Imf::OutputPart scanlines(file, static_cast<int>(i));
         write_scanlines(scanlines, parts[i]);
@@ -126,26 +163,11 @@ inline void write_exr_parts(const std::string& path, const std::vector<ExrPart>&
   }
 }
 
-// One sample a pixel.
 inline void write_deep_exr(const std::string& path, Extent extent) {
-  const auto pixels = static_cast<std::size_t>(extent.area()), width = static_cast<std::size_t>(extent.width);
-  std::vector<unsigned> counts(pixels, 1);
-  half one(1);
-  std::vector<half*> samples(pixels, &one);
-  Imf::Header header(extent.width, extent.height);
-  header.setType(Imf::DEEPSCANLINE);
-  header.compression() = Imf::ZIPS_COMPRESSION;
-  Imf::DeepFrameBuffer buffer;
-  buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()),
-                                           sizeof counts[0], sizeof counts[0] * width));
-  for (const char* name : {"R", "G", "B", "A"}) {
-    header.channels().insert(name, Imf::Channel(Imf::HALF));
-    buffer.insert(name, Imf::DeepSlice(Imf::HALF, reinterpret_cast<char*>(samples.data()), sizeof samples[0],
-                                       sizeof samples[0] * width, sizeof one));
-  }
-  Imf::DeepScanLineOutputFile file(path.c_str(), header);
-  file.setFrameBuffer(buffer);
-  file.writePixels(extent.height);
+  ExrPart part = simple_part(extent, {"R", "G", "B", "A"}, {});
+  part.deep = true;
+  Imf::DeepScanLineOutputFile file(path.c_str(), header_of(part, false));
+  write_deep(file, extent, part.channels);
 }
 
 }  // namespace quincunx::testing

@@ -131,6 +131,34 @@ TEST_F(Reading, PartsAreFoundByChannelAndByPartAndChannel) {
   EXPECT_EQ(reader.header().channel_names(), "beauty.R, beauty.G, beauty.B, motion.X, motion.Y");
 }
 
+TEST_F(Reading, FlatPartsAmongDeepOnesAndMipmaps) {
+  ExrPart deep = simple_part({20, 18}, {"R", "G", "B", "A"}, {});
+  deep.name = "deep", deep.deep = true;
+  ExrPart tiles = simple_part({20, 18}, {"R", "G"}, ramp(720, 3));
+  tiles.name = "tiles", tiles.tile = 8, tiles.mipmaps = true;
+  ExrPart flat = simple_part({9, 7}, {"R", "Z"}, ramp(126, 500));  // with another data window
+  flat.name = "flat", flat.data = {5, 4, {9, 7}}, flat.display = deep.display;
+  ImageReader reader = open({deep, tiles, flat});
+  EXPECT_TRUE(check_whole(folder_.file("a.exr")).ok());
+  EXPECT_TRUE(reader.header().parts[0].deep);
+  EXPECT_FALSE(reader.header().parts[1].deep || reader.header().parts[2].deep);
+  EXPECT_EQ(channel(reader, "tiles.G"), every(2, 1, tiles.pixels));
+  const std::vector<float> values = channel(reader, "flat.R");
+  EXPECT_EQ(values[4 * 20 + 5], flat.pixels[0]);
+  EXPECT_EQ(values[0], kUntouched);
+}
+
+TEST_F(Reading, ViewsAndAttributesOfEachPart) {
+  ExrPart left = simple_part({2, 2}, {"R"}, ramp(4, 0)), right = left;
+  left.name = "left", right.name = "right";
+  left.view = "L", right.view = "R";
+  EXPECT_EQ(open({left, right}).header().parts[1].view, "R");
+  ExrPart both = simple_part({2, 2}, {"R", "b.R"}, ramp(8, 0));
+  both.views = {"a", "b"};
+  EXPECT_EQ(open({both}).header().views, both.views);
+  EXPECT_EQ(open({left, right}).header().views, std::vector<std::string>());
+}
+
 // Cropped on two sides and reaching over the other two.
 TEST_F(Reading, ADataWindowThatIsNotTheDisplayWindow) {
   for (const int tile : {0, 16}) {

@@ -73,7 +73,9 @@ Result<DiagnosedFrame> read_file(const ResolveTask& task, const ScannedFrame& sc
     return status;
   const auto reader = ImageReader::open(path);
   if (!reader.ok()) return reader.status();
-  const auto attributes = frame_attributes(path, reader->header());
+  const auto places = find_channels(path, reader->header(), format.channels);
+  if (!places.ok()) return places.status();
+  const auto attributes = frame_attributes(path, reader->header(), places->picture_part());
   if (!attributes.ok()) return attributes.status();
   DiagnosedFrame frame = {.number = scanned.number,
                           .index = std::max<std::int64_t>(attributes->index.value_or(scanned.number), 0),

@@ -243,7 +243,7 @@ Result<LoadedImage> read_image(const std::string& path) {
                        .channels = {},
                        .stored = {},
                        .pixels = {},
-                       .attributes = reader->header().attributes};
+                       .attributes = part.attributes};
   const std::size_t count = part.channels.size();
   image.pixels.resize(static_cast<std::size_t>(image.extent.area()) * count);
   std::vector<ChannelTarget> targets;
@@ -293,29 +293,33 @@ ImageWindow ImagePart::shown() const {
            std::min(data.y + data.extent.height, display.y + display.extent.height) - y}};
 }
 
-std::optional<ChannelPlace> ImageHeader::find(std::string_view name) const {
-  const auto search = [&](auto&& matches) -> std::optional<ChannelPlace> {
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      for (std::size_t c = 0; c < parts[p].channels.size(); ++c) {
-        if (matches(parts[p], parts[p].channels[c]))
-          return ChannelPlace{static_cast<int>(p), static_cast<int>(c)};
-      }
-    }
-    return std::nullopt;
-  };
-  const auto found =
-      search([&](const ImagePart&, const HeaderChannel& channel) { return channel.name == name; });
-  if (found) return found;
-  return search([&](const ImagePart& part, const HeaderChannel& channel) {
-    return name.size() == part.name.size() + 1 + channel.name.size() && name.starts_with(part.name) &&
-           name[part.name.size()] == '.' && name.ends_with(channel.name);
-  });
+bool ImageHeader::is_called(ChannelPlace place, std::string_view name) const {
+  const std::string &part = parts[place.part].name, &own = at(place).name;
+  if (name == own) return true;
+  return name.size() == part.size() + 1 + own.size() && name.starts_with(part) && name[part.size()] == '.' &&
+         name.ends_with(own);
 }
 
-const Attribute* ImageHeader::attribute(std::string_view name) const {
+std::vector<ChannelPlace> ImageHeader::places_of(std::string_view name) const {
+  std::vector<ChannelPlace> places;
+  for (int p = 0; p < static_cast<int>(parts.size()); ++p) {
+    for (int c = 0; c < static_cast<int>(parts[p].channels.size()); ++c)
+      if (is_called({p, c}, name)) places.push_back({p, c});
+  }
+  return places;
+}
+
+std::optional<ChannelPlace> ImageHeader::find(std::string_view name) const {
+  const std::vector<ChannelPlace> places = places_of(name);
+  return places.empty() ? std::nullopt : std::optional(places.front());
+}
+
+const Attribute* ImageHeader::attribute(std::string_view name, int part) const {
+  const std::vector<Attribute>& attributes = parts[static_cast<std::size_t>(part)].attributes;
   const auto found = std::find_if(attributes.begin(), attributes.end(),
                                   [&](const Attribute& attribute) { return attribute.name == name; });
-  return found == attributes.end() ? nullptr : &*found;
+  if (found != attributes.end()) return &*found;
+  return part > 0 ? this->attribute(name) : nullptr;
 }
 
 std::string ImageHeader::channel_names() const {

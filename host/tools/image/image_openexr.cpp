@@ -110,6 +110,7 @@ ImageWindow window_of(const Imath::Box2i& box) {
 
 ImagePart describe(const Imf::Header& header) {
   ImagePart part;
+  part.attributes = attributes_of(header);
   if (header.hasName()) part.name = header.name();
   part.data = window_of(header.dataWindow());
   part.display = window_of(header.displayWindow());
@@ -141,8 +142,7 @@ Imf::Slice slice_at(int left, int top, ChannelType type, void* data, std::size_t
 
 using Targets = std::vector<ChannelTarget>;
 
-// Those of one part, each channel once: OpenEXR takes one place for each. So a channel that is wanted twice is read
-// twice.
+// Those of one part, each channel once, as OpenEXR takes one place for each: what is wanted twice is read twice.
 std::vector<Targets> rounds_of(std::span<const ChannelTarget> targets) {
   std::vector<Targets> rounds;
   for (const ChannelTarget& target : targets) {
@@ -205,7 +205,7 @@ void read_wide_rows(Imf::InputPart& input, const ImagePart& part, const Targets&
 class ExrFile : public backend::ImageFile {
  public:
   explicit ExrFile(const std::string& path) : file_(path.c_str()) {
-    header.attributes = attributes_of(file_.header(0));
+    if (Imf::hasMultiView(file_.header(0))) header.views = Imf::multiView(file_.header(0));
     for (int part = 0; part < file_.parts(); ++part)
       header.parts.push_back(describe(file_.header(part)));
   }

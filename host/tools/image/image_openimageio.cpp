@@ -190,6 +190,7 @@ bool is_code(Base type) {
 
 ImagePart describe(const OIIO::ImageSpec& spec, bool is_exr) {
   ImagePart part;
+  part.attributes = attributes_of(spec);
   part.name = spec["oiio:subimagename"].get();
   part.data = {spec.x, spec.y, {spec.width, spec.height}};
   part.display = {spec.full_x, spec.full_y, {spec.full_width, spec.full_height}};
@@ -369,26 +370,27 @@ std::string read_bands(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, con
   return {};
 }
 
+std::string with_advice(const std::string& why) {
+  if (!OIIO::Strutil::contains(why, "Subsampled")) return why;
+  return fmt::format("{}; render it at full size", OIIO::Strutil::strip(why.substr(0, why.find('\n')), "."));
+}
+
 class File : public backend::ImageFile {
  public:
   explicit File(const std::string& path) : path_(path), input_(open_input(path)) {
-    if (!input_) {
-      std::string why = OIIO::geterror();
-      if (OIIO::Strutil::contains(why, "Subsampled"))
-        why = fmt::format("{}; render it at full size",
-                          OIIO::Strutil::strip(why.substr(0, why.find('\n')), "."));
-      throw std::runtime_error(why);
-    }
+    if (!input_) throw std::runtime_error(with_advice(OIIO::geterror()));
     is_exr_ = std::string_view(input_->format_name()) == "openexr";
     const int count = is_exr_ ? std::max(input_->spec()["oiio:subimages"].get(1), 1) : 1;
     for (int i = 0; i < count; ++i) {
-      if (!input_->seek_subimage(i, 0)) throw std::runtime_error(input_->geterror());
+      if (!input_->seek_subimage(i, 0)) throw std::runtime_error(with_advice(input_->geterror()));
       OIIO::ImageSpec spec = input_->spec();
       if (spec.nchannels == 2 && spec.alpha_channel == 1) spec.channelnames[0] = "Y";
       header.parts.push_back(describe(spec, is_exr_));
       specs_.push_back(std::move(spec));
     }
-    header.attributes = attributes_of(specs_.front());
+    if (const auto* views = specs_.front().find_attribute("multiView"); views && is_exr_)
+      for (int i = 0; i < static_cast<int>(views->type().basevalues()); ++i)
+        header.views.push_back(views->get_string_indexed(i));
   }
 
   void read(std::span<const ChannelTarget> targets) override {

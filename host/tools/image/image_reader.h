@@ -49,6 +49,7 @@ struct ImagePart {
   std::optional<Chromaticities> chromaticities = {};
   bool straight_alpha = false;  // colour is not multiplied by alpha
   std::vector<HeaderChannel> channels;
+  std::vector<Attribute> attributes = {};
 
   // Pixels of the display window that the data window has; the extent is not positive where there are none.
   ImageWindow shown() const;
@@ -62,13 +63,16 @@ struct ChannelPlace {
 };
 
 struct ImageHeader {
-  std::vector<ImagePart> parts;       // at least one
-  std::vector<Attribute> attributes;  // the first part's
+  std::vector<ImagePart> parts;    // at least one
+  std::vector<std::string> views;  // the attribute multiView
 
-  // By the channel's own name in whichever part has it first, else as "PART.CHANNEL".
-  std::optional<ChannelPlace> find(std::string_view name) const;
+  // By its own name, or as "PART.CHANNEL".
+  bool is_called(ChannelPlace place, std::string_view name) const;
+  std::vector<ChannelPlace> places_of(std::string_view name) const;  // of all parts, in their order
+  std::optional<ChannelPlace> find(std::string_view name) const;     // the first of them
   const HeaderChannel& at(ChannelPlace place) const { return parts[place.part].channels[place.channel]; }
-  const Attribute* attribute(std::string_view name) const;  // null when there is none
+  // The part's, else the first part's; null when there is none.
+  const Attribute* attribute(std::string_view name, int part = 0) const;
   std::string channel_names() const;  // for messages: "R, G, B, Z", of several parts "rgba.R, ..."
 };
 

@@ -156,11 +156,11 @@ AttributeValue attribute_of(std::int64_t number) {
 
 }  // namespace
 
-Result<FrameAttributes> frame_attributes(const std::string& path, const ImageHeader& header) {
+Result<FrameAttributes> frame_attributes(const std::string& path, const ImageHeader& header, int part) {
   FrameAttributes attributes;
   Status first;
   const auto take = [&]<typename Value>(const char* name, std::optional<Value>& target, const char* what) {
-    const Attribute* attribute = header.attribute(name);
+    const Attribute* attribute = header.attribute(name, part);
     if (attribute == nullptr) return;
     Value value = {};
     if (read(attribute->value, value)) {

@@ -41,8 +41,9 @@ struct FrameAttributes {
   friend bool operator==(const FrameAttributes&, const FrameAttributes&) = default;
 };
 
-// Errors: kIoFailure, naming `path` and the attribute, where one holds what it cannot mean.
-Result<FrameAttributes> frame_attributes(const std::string& path, const ImageHeader& header);
+// `part`: as ImageHeader::attribute() has it. Errors: kIoFailure, naming `path` and the attribute, where one holds what
+// it cannot mean.
+Result<FrameAttributes> frame_attributes(const std::string& path, const ImageHeader& header, int part = 0);
 
 // Returns those that are set, and the format's version.
 std::vector<Attribute> to_attributes(const FrameAttributes& attributes);

@@ -146,9 +146,11 @@ std::vector<Vec2> jitters_about(const FramePattern& pattern, const SequenceForma
     const std::string path = pattern.expand(n);
     const auto reader = ImageReader::open(path);
     if (!reader.ok()) continue;
-    const auto attributes = frame_attributes(path, reader->header());
+    const auto places = find_channels(path, reader->header(), format.channels);
+    const int part = places.ok() ? places->picture_part() : 0;
+    const auto attributes = frame_attributes(path, reader->header(), part);
     if (!attributes.ok()) continue;
-    const Extent render = reader->header().parts.front().display.extent;
+    const Extent render = reader->header().parts[part].display.extent;
     const auto jitter = format.jitter.at(path, n, attributes.value(), render, format.output);
     if (jitter.ok()) jitters.push_back(jitter.value());
   }

@@ -31,13 +31,16 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-resolve recorded --out "up/up.%04d.exr"                 as it was recorded, bit for bit
 Exit status: 0 done, 1 failed, 2 wrong usage, 3 --diagnose found something wrong.)";
 
-// "A,B" into two words that are not empty; `example` ends the sentence where it is not that.
+// "A,B" into two words that are not empty; `example` ends the sentence where it is not that. The words may have commas
+// themselves, as many each: names of one layer.
 template <typename Take>
 Setting pair(const std::string& value, const std::string& example, Take take) {
   return text(value, [example, take](const std::string& words) -> std::string {
-    const std::size_t comma = words.find(',');
-    if (comma == std::string::npos || comma == 0 || comma + 1 == words.size() ||
-        words.find(',', comma + 1) != std::string::npos)
+    std::size_t comma = words.find(',');
+    const auto commas = std::count(words.begin(), words.end(), ',');
+    for (auto i = commas / 2; i > 0; --i)
+      comma = words.find(',', comma + 1);
+    if (commas % 2 == 0 || comma == 0 || comma + 1 == words.size())
       return fmt::format("'{}' is not two with a comma between; {}", words, example);
     return take(words.substr(0, comma), words.substr(comma + 1));
   });
@@ -149,9 +152,15 @@ void add_channel_options(CommandLine& line, ResolveOptions& options) {
   const auto has_channels = [&input, has_motion] { return has_motion() || input.next_velocity.has_value(); };
   constexpr const char* kMotion = "channels of motion, not with --velocity none or camera";
   line.group("Channels");
-  line.add("--colour,--color", text(input.colour_layer, "LAYER"),
-           "Layer of colour: R, G, B, A of LAYER (default: without layer)")
+  line.add("--colour,--color", text(input.picture.layer, "LAYER"),
+           "The picture: R, G, B, A of LAYER, PART or PART.LAYER (default: without layer, or what is called "
+           "beauty, "
+           "rgba, Combined or the like)")
       .common();
+  line.add("--part", text(input.picture.part, "NAME|N"),
+           "Part of the picture in files of several, from 0 on");
+  line.add("--view-name", text(input.picture.view, "NAME"),
+           "View of stereo files: of the picture, motion and depth (default: the file's first)");
   line.add("--input-colour,--input-color", text(input.colour_space, "NAME"),
            "Colour space of the frames: linear, ACEScg, sRGB, KodakLog or another that OpenImageIO knows "
            "(default: as the files say)");
@@ -258,7 +267,7 @@ void add_output_options(CommandLine& line, ResolveOptions& options) {
   line.add("--resume", flag(options.resume), "Leave frames out that are there already").needs({"--out"});
   line.add("--truth", text(options.truth, "PATTERN"), "True pictures to score the frames against");
   line.add("--truth-colour,--truth-color", text(options.truth_colour, "LAYER"),
-           "Layer of the true pictures (default: without layer)")
+           "Layer of the true pictures, as --colour has it")
       .needs({"--truth"});
   line.add("--report", text(options.report, "BASE"),
            "Write BASE.html, .txt and .json: scores, times, passes; or what --diagnose finds, and where")

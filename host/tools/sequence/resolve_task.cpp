@@ -58,8 +58,12 @@ Result<SequenceFormat> settle_by_first(const ResolveOptions& options, const Reso
   for (const std::int64_t number : task.asked) {
     const std::string path = task.input.expand(number);
     auto reader = ImageReader::open(path);
-    auto attributes =
-        reader.ok() ? frame_attributes(path, reader->header()) : Result<FrameAttributes>(reader.status());
+    Result<FrameAttributes> attributes = reader.status();
+    if (reader.ok()) {
+      const auto picture = choose_picture(path, reader->header(), input.picture);
+      if (!picture.ok()) return picture.status();
+      attributes = frame_attributes(path, reader->header(), picture->part);
+    }
     if (attributes.ok()) return settle(input, path, reader->header(), attributes.value());
     if (first_error.ok()) {
       std::error_code error;
@@ -234,14 +238,16 @@ Status ResolveTask::check(bool skip_bad_frames) const {
   if (Status status = scan.problem(); !status.ok() && !skip_bad_frames) return status;
   if (!scan.frames.empty() && scan.target() == Extent{})
     return Status::io(fmt::format("no frame can be used; {}", scan.problem().message()));
-  if (!output) return {};
   std::vector<std::string> read;
   for (const ScannedFrame& frame : scan.frames)
     read.push_back(input.expand(frame.number));
   for (const std::int64_t frame : asked) {
     if (truth) read.push_back(truth->pattern.expand(frame));
   }
-  return output->check_names(scan.wanted(), read);
+  if (Status status = output ? output->check_names(scan.wanted(), read) : Status(); !status.ok())
+    return status;
+  if (!truth || scan.wanted().empty()) return {};
+  return SequenceScores::create(*truth, format.output, scan.wanted(), false).status();
 }
 
 Result<ResolveTask> prepare(const ResolveOptions& options) {
@@ -252,7 +258,9 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
   if (!options.truth.empty()) {
     auto truth = parse_input(options.truth, "truth pattern");
     if (!truth.ok()) return truth.status();
-    task.truth = {std::move(truth).value(), options.truth_colour, options.sequence.colour_space};
+    task.truth = {.pattern = std::move(truth).value(),
+                  .layer = options.truth_colour,
+                  .colour_space = options.sequence.colour_space};
   }
   if (Status status = settle_frames(options, task); !status.ok()) return status;
   if (!options.frames) {
@@ -260,6 +268,7 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
   }
   const Status settled = recorded ? settle_recorded(options, task) : settle_sequence(options, task);
   if (!settled.ok()) return settled;
+  if (task.truth) task.truth->view = task.format.view;
   const int history = recorded ? std::numeric_limits<int>::max() : history_of(task.plan);
   if (task.output && options.warm_up.value_or(history) < history)
     task.output->settings += "; begun without history";

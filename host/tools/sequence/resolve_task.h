@@ -74,8 +74,8 @@ struct ResolveTask {
   std::optional<SequenceOutput> output = {};
   std::optional<TruthFiles> truth = {};
 
-  // Whether the run can begin: a problem of the scan (unless bad frames may be skipped) or of the names of
-  // the files. Errors: as of SequenceScan::problem() and SequenceOutput::check_names().
+  // Whether the run can begin: a problem of the scan (unless bad frames may be skipped), of the names of the files, or
+  // of the truth. Errors: as of SequenceScan::problem(), SequenceOutput::check_names() and SequenceScores::create().
   Status check(bool skip_bad_frames) const;
 };
 

@@ -1,75 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Sequence input: which channels of a file are colour, motion, depth and reactive values; what a command line says of a
-// sequence, and what that comes to with the first frame at hand. Pure.
+// Sequence input: what a command line says of a sequence, and what that comes to with the first frame at hand. Pure.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "quincunx/resolve_plan.h"
-#include "src/plan/resources.h"
 #include "tools/image/image_reader.h"
 #include "tools/program/frame_pattern.h"
 #include "tools/record/exchange_format.h"
+#include "tools/sequence/sequence_channels.h"
 #include "tools/sequence/sequence_jitter.h"
 
 namespace quincunx::tools {
-
-// The images that frames of a sequence bring: the inputs of plan/resources.h, numbered as there, and albedo, which is
-// the colour of a service of its own.
-enum class InputPlane : std::uint8_t {
-  kColour,
-  kVelocity,
-  kDepth,
-  kReactive,
-  kAlbedo = static_cast<std::uint8_t>(Resource::kInputCount),
-};
-inline constexpr std::size_t kPlaneCount = static_cast<std::size_t>(InputPlane::kAlbedo) + 1;
-
-constexpr InputPlane plane_of(const InputImage& input) {
-  return static_cast<InputPlane>(&input - kInputs);
-}
-
-template <typename Value>
-struct PerPlane {
-  std::array<Value, kPlaneCount> values = {};
-
-  Value& operator[](InputPlane plane) { return values[static_cast<std::size_t>(plane)]; }
-  const Value& operator[](InputPlane plane) const { return values[static_cast<std::size_t>(plane)]; }
-};
-
-// By name; none: this plane is not read. The fourth of colour, A, may be missing in the file: 1.
-struct ChannelNames : PerPlane<std::vector<std::string>> {
-  ChannelNames() { (*this)[InputPlane::kColour] = kColourChannels; }
-  bool has(InputPlane plane) const { return !(*this)[plane].empty(); }
-};
-
-// "ViewLayer.Combined" -> its R, G, B and A; "" -> R, G, B and A. A layer of one channel Y is grey: Y stands for the
-// first three. Where the file has neither they are R, G and B.
-std::vector<std::string> colour_channels_in(const ImageHeader& header, const std::string& layer);
-
-// "colour R,G,B,A", "grey Y,A".
-std::string colour_text(const ChannelNames& names);
-
-// Where they are in one file.
-struct ChannelPlaces : PerPlane<std::vector<std::optional<ChannelPlace>>> {  // only A may be absent
-  ImageWindow display;  // display window of the parts in use
-  bool half_colour = true;
-  bool background = true;  // colour covers the display window, and there is no alpha
-  bool dwa = false;        // some of the channels are compressed with loss, by what their names end in
-};
-
-// Whether pixels of the display window lie outside the data window.
-bool leaves_pixels_open(const ImagePart& part);
-
-// Errors: kIoFailure, one sentence with `path` and the channel: one that is missing, deep, of integers, or
-// in a part of another size. Where colour is missing the sentence says which layers would do; `option` is the one that
-// names a layer of these files.
-Result<ChannelPlaces> find_channels(const std::string& path, const ImageHeader& header,
-                                    const ChannelNames& names, const std::string& option = "--colour");
 
 // Stands for a near plane that nobody names: nearer than any surface, in whatever unit. Passes that compare depths
 // compare their ratios, and a power of two keeps those exact.
@@ -84,7 +29,7 @@ enum class MotionSource : std::uint8_t {
 };
 
 struct SequenceInput {
-  std::string colour_layer;  // "ViewLayer.Combined"; empty: R, G, B, A, or Y
+  PictureWish picture;
   std::string colour_space;  // as InputColour has it; empty: as the files say
   MotionSource motion = MotionSource::kAutomatic;
   std::vector<std::string> velocity;                      // names of kChannels
@@ -114,6 +59,7 @@ enum class NextMotion : std::uint8_t {
 struct SequenceFormat {
   std::string recording;  // the folder of recorded frames; empty: they are none
   ChannelNames channels;
+  std::string view;                            // the picture's; empty: none
   std::string colour_space;                    // as SequenceInput has it
   std::optional<FramePattern> reactive_files;  // files of their own; channels.reactive is then empty
   std::string converted_from;                  // the first frame's colour space; empty: light as it is wanted

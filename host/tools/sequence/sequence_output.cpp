@@ -13,7 +13,7 @@
 #include "tools/image/display_light.h"
 #include "tools/image/image_reader.h"
 #include "tools/program/atomic_file.h"
-#include "tools/sequence/sequence_input.h"
+#include "tools/sequence/sequence_channels.h"
 
 namespace quincunx::tools {
 namespace {
@@ -40,29 +40,49 @@ Status check_size(const std::string& path, Extent found, Extent wanted) {
                                 found.height, wanted.width, wanted.height));
 }
 
-Result<std::vector<float>> read_truth(const std::string& path, const TruthFiles& truth, Extent extent) {
+struct OpenTruth {
+  ImageReader reader;
+  ChannelPlaces places;
+  InputColour colour;
+};
+
+Result<OpenTruth> open_truth(const std::string& path, const TruthFiles& truth, Extent extent) {
   auto reader = ImageReader::open(path);
   if (!reader.ok()) return reader.status();
+  if (Status status = check_whole(path); !status.ok()) return Status::io("truth " + status.message());
+  const ImageHeader& header = reader->header();
+  const std::vector<std::string> views = views_of(header);
+  const bool has_view = std::find(views.begin(), views.end(), truth.view) != views.end();
+  const std::string option = "--truth-colour";
+  const auto picture = choose_picture(
+      path, header, {.layer = truth.layer, .view = has_view ? truth.view : "", .option = option});
+  if (!picture.ok()) return Status::io("truth " + picture.status().message());
   ChannelNames names;
-  names[InputPlane::kColour] = colour_channels_in(reader->header(), truth.colour_layer);
-  const auto places = find_channels(path, reader->header(), names, "--truth-colour");
+  names[InputPlane::kColour] = picture->channels;
+  const auto places = find_channels(path, header, names, option);
   if (!places.ok()) return Status::io("truth " + places.status().message());
   if (Status status = check_size(path, places->display.extent, extent); !status.ok()) return status;
-  const ImagePart& part = reader->header().parts[(*places)[InputPlane::kColour][0]->part];
+  const ImagePart& part = header.parts[places->picture_part()];
   auto colour = InputColour::of(path, part);
   if (!part.chromaticities && colour.ok() && colour->is_light())  // the file says nothing of its colour
     colour = InputColour::of(path, part, truth.colour_space);
   if (!colour.ok()) return Status::io("truth " + colour.status().message());
+  return OpenTruth{std::move(reader).value(), places.value(), std::move(colour).value()};
+}
+
+Result<std::vector<float>> read_truth(const std::string& path, const TruthFiles& truth, Extent extent) {
+  auto open = open_truth(path, truth, extent);
+  if (!open.ok()) return open.status();
   std::vector<float> rgba(static_cast<std::size_t>(extent.area()) * 4);
   std::vector<ChannelTarget> targets;
   for (std::size_t c = 0; c < 3; ++c) {
-    targets.push_back({*(*places)[InputPlane::kColour][c], ChannelType::kFloat, rgba.data() + c,
+    targets.push_back({*open->places[InputPlane::kColour][c], ChannelType::kFloat, rgba.data() + c,
                        4 * sizeof(float), 4 * sizeof(float) * static_cast<std::size_t>(extent.width)});
   }
-  if (Status status = reader->read(targets); !status.ok()) return status;
+  if (Status status = open->reader.read(targets); !status.ok()) return status;
   for (std::size_t i = 3; i < rgba.size(); i += 4)
     rgba[i] = 1;  // nobody looks at it
-  colour->apply(rgba);
+  open->colour.apply(rgba);
   return rgba;
 }
 
@@ -149,7 +169,7 @@ Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const TruthFiles&
     std::error_code error;
     const std::string path = truth.pattern.expand(frame);
     if (!std::filesystem::exists(path, error)) continue;
-    if (Status status = check_whole(path); !status.ok()) return Status::io("truth " + status.message());
+    if (const auto found = open_truth(path, truth, extent); !found.ok()) return found.status();
     scores->known_.push_back(frame);
     scores->files_.push_back(path);
   }

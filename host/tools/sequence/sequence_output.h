@@ -59,7 +59,8 @@ using SharedPixels = std::shared_ptr<const std::vector<float>>;  // linear RGBA
 // True pictures: linear colour of the output's size, as display windows tell it; nothing (black) beyond a data window.
 struct TruthFiles {
   FramePattern pattern;
-  std::string colour_layer = {};  // as SequenceInput has it
+  std::string layer = {};         // as PictureWish has it
+  std::string view = {};          // of the picture that is scored; counts in files that have it
   std::string colour_space = {};  // of files that say nothing of theirs, as SequenceInput has it
 };
 
@@ -67,7 +68,7 @@ struct TruthFiles {
 class SequenceScores {
  public:
   // `frames`: those that will be added, ascending. Errors: kIoFailure where none of them has a true picture,
-  // or one is damaged or has another size than `extent`. `keep_pictures`: as ScoredFrames has it.
+  // or one is cut short, lacks a picture or has another size than `extent`. `keep_pictures`: as ScoredFrames has it.
   static Result<std::unique_ptr<SequenceScores>> create(const TruthFiles& truth, Extent extent,
                                                         std::span<const std::int64_t> frames,
                                                         bool keep_pictures);

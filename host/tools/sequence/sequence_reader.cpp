@@ -146,7 +146,9 @@ Status read_unguarded(const std::string& path, const SequenceFormat& format, con
   if (!places.ok()) return places.status();
   if (places->display.extent != expected.render)
     return Status::io(fmt::format("'{}' has changed its size while the sequence was read", path));
-  const auto attributes = frame_attributes(path, reader->header());
+  const int picture_part = places->picture_part();
+  const ImagePart& part = reader->header().parts[picture_part];
+  const auto attributes = frame_attributes(path, reader->header(), picture_part);
   if (!attributes.ok()) return attributes.status();
 
   frame.number = expected.number;
@@ -154,21 +156,19 @@ Status read_unguarded(const std::string& path, const SequenceFormat& format, con
   frame.world_to_ndc = attributes->world_to_ndc;
   frame.kept.clear();
   for (const char* name : kKeptAttributes) {
-    if (const Attribute* attribute = reader->header().attribute(name)) frame.kept.push_back(*attribute);
+    if (const Attribute* attribute = reader->header().attribute(name, picture_part))
+      frame.kept.push_back(*attribute);
   }
   if (Status status = read_pixels(reader.value(), places.value(), format, colour, frame); !status.ok())
     return status;
-  const auto& colour_places = (*places)[InputPlane::kColour];
-  if (!colour_places.back()) {
-    const ImagePart& part = reader->header().parts[colour_places[0]->part];
+  if (!(*places)[InputPlane::kColour].back()) {
     if (colour == PixelFormat::kRGBA16F) {
       fill_alpha(frame.texels[InputPlane::kColour], part, kHalfOne);
     } else {
       fill_alpha(frame.texels[InputPlane::kColour], part, 1.0f);
     }
   }
-  const auto light =
-      InputColour::of(path, reader->header().parts[colour_places[0]->part], format.colour_space);
+  const auto light = InputColour::of(path, part, format.colour_space);
   if (!light.ok()) return light.status();
   if (!light->is_light()) make_light(light.value(), colour, frame);
   to_velocity(format.units, frame.render, frame.velocity());

@@ -54,11 +54,11 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
     const auto next = find_channels(path, reader->header(), backward_format(format).channels);
     if (!next.ok()) return next.status();
   }
-  const auto attributes = frame_attributes(path, reader->header());
+  const int part = places->picture_part();
+  const auto attributes = frame_attributes(path, reader->header(), part);
   if (!attributes.ok()) return attributes.status();
   frame.render = places->display.extent;
-  const auto colour = InputColour::of(path, reader->header().parts[(*places)[InputPlane::kColour][0]->part],
-                                      format.colour_space);
+  const auto colour = InputColour::of(path, reader->header().parts[part], format.colour_space);
   if (!colour.ok()) return colour.status();
   frame.half_colour = places->half_colour && colour->is_light();
   frame.background = places->background;
