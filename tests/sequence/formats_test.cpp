@@ -170,11 +170,11 @@ TEST_F(Formats, AMaskOfGreyAndAlphaIsItsGrey) {
   ASSERT_TRUE(bytes.ok()) << bytes.status().message();
   std::ofstream(folder_.file("m.png"), std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes->data()), static_cast<std::streamsize>(bytes->size()));
-  auto mask = tools::open_mask(folder_.file("m.png"), kRender);
+  auto mask = tools::open_mask(folder_.file("m.png"), kRender, "");
   ASSERT_TRUE(mask.ok()) << mask.status().message();
   std::vector<float> values(static_cast<std::size_t>(kRender.area()));
-  const tools::ChannelTarget target = {{}, tools::ChannelType::kFloat, values.data(), 4, 64};
-  ASSERT_TRUE(mask->read({&target, 1}).ok());
+  const tools::ChannelTarget target = {mask->place, tools::ChannelType::kFloat, values.data(), 4, 64};
+  ASSERT_TRUE(mask->reader.read({&target, 1}).ok());
   for (std::size_t i = 0; i < values.size(); ++i)
     ASSERT_EQ(values[i], static_cast<float>(i % 2)) << i;
 }
@@ -190,7 +190,7 @@ TEST_F(Formats, CutPicturesAreRefusedBeforeTheFirstFrame) {
     const std::string out = fmt::format(" --out '{{}}/o.%04d.exr' -q {}", kSame);
     expect_refused("'{}/cut.%04d." + ending + "'" + out, 1, "cut.0001." + ending);
     expect_refused("'{}/a.%04d.png' --truth '{}/cut.%04d." + ending + "'" + out, 1, "truth '" + cut);
-    EXPECT_FALSE(tools::open_mask(cut, kRender).ok()) << ending;
+    EXPECT_FALSE(tools::open_mask(cut, kRender, "").ok()) << ending;
   }
   const auto resume = [&] {
     return resolve(fmt::format("'{{}}/a.%04d.png' --out '{{}}/r.%04d.png' --resume -q {}", kPoint));

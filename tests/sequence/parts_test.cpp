@@ -3,7 +3,7 @@
 #include "sequence_fixture.h"
 #include "tools/exr_files.h"
 #include "tools/record/exchange_attributes.h"
-#include "tools/sequence/sequence_channels.h"
+#include "tools/sequence/sequence_input.h"
 
 namespace quincunx::tools {
 namespace {
@@ -219,6 +219,23 @@ TEST_F(Parts, TruthIsOfTheViewThatIsScored) {
   EXPECT_TRUE(scored(""));
   EXPECT_TRUE(scored("--view-name right"));
   EXPECT_FALSE(scored("--view-name right --truth-colour left"));
+}
+
+TEST_F(Parts, AMaskIsOfTheViewThatIsResolved) {
+  auto left = part("left", {"A"}, 0), right = part("right", {"A"}, 1);
+  left.view = left.name, right.view = right.name;
+  testing::write_exr_parts(folder_.file("m.exr"), {left, right});
+  const auto place_for = [&](const std::string& view) {
+    const auto mask = open_mask(folder_.file("m.exr"), {24, 14}, view);
+    EXPECT_TRUE(mask.ok()) << mask.status().message();
+    return mask->place.part;
+  };
+  EXPECT_EQ(place_for(""), 0);
+  EXPECT_EQ(place_for("right"), 1);
+  EXPECT_EQ(place_for("middle"), 0);
+  right.sampling = 2;
+  testing::write_exr_parts(folder_.file("m.exr"), {left, right});
+  EXPECT_FALSE(open_mask(folder_.file("m.exr"), {24, 14}, "right").ok());
 }
 
 TEST_F(Parts, LayersMayHaveCommasInTheirNames) {

@@ -583,6 +583,7 @@ bool end_is_there(Bytes& bytes) {
 }  // namespace
 
 Status check_whole(const std::string& path) {
+  if (Status status = check_readable(path); !status.ok()) return status;
   Bytes bytes(path);
   if (!end_is_there(bytes))
     return Status::io(fmt::format("'{}' is cut short: its end is missing; render or copy it again", path));

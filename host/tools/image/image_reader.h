@@ -134,8 +134,8 @@ void set_image_threads(int threads);
 // the tables of all parts, and no pixels: well under a millisecond. JPEG and PNG must end as their formats have it, DPX
 // must have the size that its header says, and TIFF all strips or tiles of its first picture. It accepts other formats,
 // mipmaps of an EXR, and compressions that it does not know. Errors: kIoFailure where blocks (scanlines or tiles) were
-// never written or lie beyond the file's end: a copy or a renderer that was broken off. One sentence that names `path`.
-// Thread-safe. Source: "OpenEXR File Layout", OpenEXR documentation.
+// never written or lie beyond the file's end: a copy or a renderer that was broken off; and for a path that is no file.
+// One sentence that names `path`. Thread-safe. Source: "OpenEXR File Layout", OpenEXR documentation.
 Status check_whole(const std::string& path);
 
 }  // namespace quincunx::tools

@@ -169,7 +169,8 @@ Status check_readable(const std::string& path) {
   };
   std::error_code error;
   const auto file = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(file)) return bad("there is no such file");
+  if (!std::filesystem::exists(file))
+    return bad(std::filesystem::status_known(file) ? "there is no such file" : error.message());
   if (std::filesystem::is_directory(file)) return bad("it is a folder");
   if (!std::filesystem::is_regular_file(file))
     return bad("it is a pipe or a device; save it to a file first");

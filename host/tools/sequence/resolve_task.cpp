@@ -67,7 +67,7 @@ Result<SequenceFormat> settle_by_first(const ResolveOptions& options, const Reso
     if (attributes.ok()) return settle(input, path, reader->header(), attributes.value());
     if (first_error.ok()) {
       std::error_code error;
-      first_error = std::filesystem::exists(path, error)
+      first_error = std::filesystem::exists(path, error) || error
                         ? attributes.status()
                         : Status::io(fmt::format("frame {} is missing: there is no '{}'", number, path));
     }

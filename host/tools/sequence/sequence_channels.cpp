@@ -429,6 +429,13 @@ Result<std::vector<std::string>> channels_beside(const std::string& path, const 
   return apart;
 }
 
+std::string first_of_view(const ImageHeader& header, const std::string& view) {
+  const std::vector<NamedChannel> all = named_channels(header);
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const NamedChannel& one) { return !view.empty() && one.view == view; });
+  return full_name(header, found != all.end() ? found->place : ChannelPlace{});
+}
+
 std::vector<std::string> albedo_beside(const ImageHeader& header, const Picture& picture) {
   Candidates candidates = pictures_in(header);
   keep(candidates, [&](const Candidate& one) {

@@ -74,6 +74,9 @@ Result<std::vector<std::string>> channels_beside(const std::string& path, const 
                                                  const Picture& picture,
                                                  const std::vector<std::string>& names, bool asked = false);
 
+// Returns the file's first channel of this view, or its first of all where it has none.
+std::string first_of_view(const ImageHeader& header, const std::string& view);
+
 // Returns the channels of a layer called "albedo", or "Denoising Albedo" as Cycles has it; none if there is none.
 std::vector<std::string> albedo_beside(const ImageHeader& header, const Picture& picture);
 

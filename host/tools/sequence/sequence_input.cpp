@@ -72,19 +72,20 @@ float samples_in(const ImageHeader& header) {
 
 }  // namespace
 
-Result<ImageReader> open_mask(const std::string& path, Extent render) {
+Result<Mask> open_mask(const std::string& path, Extent render, const std::string& view) {
   auto reader = ImageReader::open(path);
-  if (!reader.ok()) return reader;
+  if (!reader.ok()) return reader.status();
   if (Status status = check_whole(path); !status.ok()) return Status::io("mask " + status.message());
-  const ImagePart& part = reader->header().parts[0];
-  const Extent found = part.display.extent;
+  ChannelNames names;
+  names[InputPlane::kColour].assign(3, first_of_view(reader->header(), view));
+  const auto places = find_channels(path, reader->header(), names);
+  if (!places.ok()) return Status::io("mask " + places.status().message());
+  const Extent found = places->display.extent;
   if (found != render) {
     return Status::io(fmt::format("mask '{}' is {}x{} pixels; its frame is {}x{}", path, found.width,
                                   found.height, render.width, render.height));
   }
-  if (part.deep || part.channels[0].integer)
-    return Status::io(fmt::format("mask '{}' is deep or holds integers; flat pixels are needed", path));
-  return reader;
+  return Mask{std::move(reader).value(), *(*places)[InputPlane::kColour][0]};
 }
 
 Result<SequenceFormat> settle(const SequenceInput& input, const std::string& first_path,

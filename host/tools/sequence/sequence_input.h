@@ -81,8 +81,14 @@ struct SequenceFormat {
   float samples = 0;  // a pixel, as Cycles says in the first frame; 0: it does not
 };
 
-// Opens a reactive mask of its own, whose first channel counts. Errors: kIoFailure, also where it has another size.
-Result<ImageReader> open_mask(const std::string& path, Extent render);
+// A reactive mask of its own: the first channel of a file, of the picture's view where that has it.
+struct Mask {
+  ImageReader reader;
+  ChannelPlace place;
+};
+
+// Errors: kIoFailure, also where it has another size or cannot be used.
+Result<Mask> open_mask(const std::string& path, Extent render, const std::string& view);
 
 // Errors: kInvalidArgument where the command line says too little (the message names the option), kIoFailure
 // where the first frame lacks what the command line counts on.

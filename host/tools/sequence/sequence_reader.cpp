@@ -107,12 +107,12 @@ Status read_pixels(ImageReader& reader, const ChannelPlaces& places, const Seque
   }
   if (Status status = reader.read(targets.all()); !status.ok()) return status;
   if (format.reactive_files) {
-    auto file = open_mask(format.reactive_files->expand(frame.number), frame.render);
+    auto file = open_mask(format.reactive_files->expand(frame.number), frame.render, format.view);
     if (!file.ok()) return file.status();
     const std::size_t row = sizeof(float) * static_cast<std::size_t>(frame.render.width);
-    const ChannelTarget target = {
-        {}, ChannelType::kFloat, values[InputPlane::kReactive].data(), sizeof(float), row};
-    if (Status status = file->read({&target, 1}); !status.ok()) return status;
+    const ChannelTarget target = {file->place, ChannelType::kFloat, values[InputPlane::kReactive].data(),
+                                  sizeof(float), row};
+    if (Status status = file->reader.read({&target, 1}); !status.ok()) return status;
   }
   for (std::size_t p = 0; p < kPlaneCount; ++p) {
     std::transform(values.values[p].begin(), values.values[p].end(), frame.texels.values[p].begin(),

@@ -22,7 +22,7 @@ constexpr int kLargestSide = 32768;  // as plan_for() has it
 
 bool exists(const std::string& path) {
   std::error_code error;
-  return std::filesystem::exists(path, error);
+  return std::filesystem::exists(path, error) || error;  // or the folder does not tell: opening it says why
 }
 
 std::string missing_text(const ScannedFrame& frame, const std::string& path) {
@@ -69,7 +69,7 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
                 std::binary_search(format.cuts.begin(), format.cuts.end(), frame.number);
   if (Status status = check_size(path, frame.render, attributes.value()); !status.ok()) return status;
   if (format.reactive_files) {
-    const auto mask = open_mask(format.reactive_files->expand(frame.number), frame.render);
+    const auto mask = open_mask(format.reactive_files->expand(frame.number), frame.render, format.view);
     if (!mask.ok()) return mask.status();
   }
   if (Status status = check_whole(path); !status.ok()) return status;
@@ -157,7 +157,11 @@ Result<std::vector<std::int64_t>> all_frames(const FramePattern& pattern) {
   auto found = pattern.frames_on_disk();
   if (!found.ok()) return found.status();
   if (found->empty()) {
-    return Status::io(fmt::format("no file is named as input pattern '{}' has it", pattern.text()));
+    std::error_code error;
+    const std::filesystem::path folder = std::filesystem::path(pattern.text()).parent_path();
+    std::filesystem::directory_iterator(folder.empty() ? "." : folder, error);
+    return Status::io(fmt::format("no file is named as input pattern '{}' has it{}", pattern.text(),
+                                  error ? ": " + error.message() : ""));
   }
   if (found->back() - found->front() >= kMostFrames) {
     return Status::io(fmt::format("the files of input pattern '{}' reach from frame {} to {}; say --frames",
