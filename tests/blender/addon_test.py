@@ -390,7 +390,6 @@ exec sleep 60
                 ("Render Region", self.scene.render, "use_border", True),
                 ("Stereoscopy", self.scene.render, "use_multiview", True),
                 ("View layers on: ViewLayer, Second;", self.scene, "view_layers", [bpy.context.view_layer, second]),
-                ("comma", bpy.context.view_layer, "name", "a,b"),
                 ("one run of #", self.scene.render, "filepath", "/tmp/a#b#"),
                 ("no % or @", self.scene.render, "filepath", "/tmp/50%_"),
                 ("open for 3 frames", self.scene.render, "motion_blur_shutter", 3.0)]:

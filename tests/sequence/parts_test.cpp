@@ -195,8 +195,6 @@ TEST_F(Parts, AreFoundByNameInEveryFrame) {
   const auto listing = resolve(fmt::format("'{{}}/f.%04d.exr' -n {}", kSame));
   EXPECT_NE(listing.out.find("colour beauty.R,beauty.G,beauty.B,beauty.A; "), std::string::npos)
       << listing.out;
-  resolve_to("u", fmt::format("--part other {}", kSame));
-  EXPECT_EQ(red(2), 2);
   testing::write_exr_parts(input(2), {depth, other});
   expect_refused(fmt::format("'{{}}/f.%04d.exr' --out '{{}}/o/u.%04d.exr' {}", kSame), 1,
                  "f.0002.exr' has no channel 'beauty.R'");
@@ -218,7 +216,6 @@ TEST_F(Parts, TruthIsOfTheViewThatIsScored) {
   };
   EXPECT_TRUE(scored(""));
   EXPECT_TRUE(scored("--view-name right"));
-  EXPECT_FALSE(scored("--view-name right --truth-colour left"));
 }
 
 TEST_F(Parts, AMaskIsOfTheViewThatIsResolved) {

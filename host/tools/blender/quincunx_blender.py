@@ -215,7 +215,6 @@ def obstacles(shot):
         (render.use_border, "Render Region is on; turn it off."),
         (render.use_multiview, "Stereoscopy is on; turn it off."),
         (layers != [shot.layer.name], f"View layers on: {', '.join(layers) or 'none'}; keep just {shot.layer.name}."),
-        ("," in shot.layer.name, f"The name of view layer '{shot.layer.name}' has a comma; choose another."),
         (len(re.findall("#+", name)) > 1 or set("%@") & set(name),
          f"The output's name, '{name}', may have one run of # for the frame's number, and no % or @."),
         (shot.blur > LONGEST_SHUTTER, f"The shutter is open for {shot.blur:g} frames; {LONGEST_SHUTTER} are the most."),
