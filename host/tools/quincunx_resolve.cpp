@@ -77,6 +77,9 @@ void say_first(const ResolveOptions& options, const ResolveTask& task) {
     spdlog::info("colour is {}; it is made linear Rec. 709 (--input-colour takes another)",
                  task.format.converted_from);
   }
+  if (task.format.camera != CameraSense{} && !options.sequence.camera)
+    spdlog::info("worldToNDC is read as {} (--world-to-ndc takes another sense)",
+                 text_of(task.format.camera));
   if (!task.method_reason.empty())
     spdlog::info("method {}: {} (--method takes another)", name_of(variant_of(task.plan.settings)),
                  task.method_reason);

@@ -146,7 +146,6 @@ TEST_F(Input, AttributesThatMeanNothingAreRefused) {
     EXPECT_EQ(message.rfind("'f.exr' has an attribute '" + attribute.name + "'", 0), 0u) << message;
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
-  refused({"jitter", 1}, "two numbers");
   refused({"quincunx:jitter", std::string("1 2 3")}, "two numbers");
   refused({"quincunx:jitter", Vec2{NAN, 0}}, "two numbers");
   refused({"quincunx:outputSize", Vec2{0, 20}}, "a width and a height");

@@ -65,7 +65,10 @@ TEST(FramePattern, FindsTheNumberInAPath) {
   const FramePattern padded = FramePattern::parse("a/f.%04d.exr").value();
   EXPECT_EQ(padded.number_in("a/f.0007.exr"), 7);
   EXPECT_EQ(padded.number_in("a/f.12345.exr"), 12345);
-  for (const char* other : {"a/f.7.exr", "a/f.00007.exr", "a/f.exr", "a/f..exr", "a/f.-001.exr",
+  EXPECT_EQ(padded.number_in("a/f.-003.exr"), -3);
+  EXPECT_EQ(padded.expand(-3), "a/f.-003.exr");
+  EXPECT_EQ(padded.number_in("a/f.3000000001.exr"), 3'000'000'001);
+  for (const char* other : {"a/f.7.exr", "a/f.00007.exr", "a/f.exr", "a/f..exr", "a/f.-1.exr", "a/f.-000.exr",
                             "b/f.0007.exr", "a/f.0007.exr.tmp", "a/f.00x7.exr", "a/f.0007_.exr", ""}) {
     EXPECT_FALSE(padded.number_in(other)) << other;
   }
@@ -95,12 +98,16 @@ TEST(FrameNumbers, ReadsFramesRangesAndSteps) {
   EXPECT_EQ(parse_frame_numbers("1-10x2,20").value(), (Frames{1, 3, 5, 7, 9, 20}));
   EXPECT_EQ(parse_frame_numbers("1-10x4").value(), (Frames{1, 5, 9}));
   EXPECT_EQ(parse_frame_numbers("5-5").value(), (Frames{5}));
+  EXPECT_EQ(parse_frame_numbers("-3").value(), (Frames{-3}));
+  EXPECT_EQ(parse_frame_numbers("-3--1").value(), (Frames{-3, -2, -1}));
+  EXPECT_EQ(parse_frame_numbers("-5-1x3,7").value(), (Frames{-5, -2, 1, 7}));
+  EXPECT_EQ(parse_frame_numbers("3000000001").value(), (Frames{3'000'000'001}));
   EXPECT_EQ(parse_frame_numbers("20,3-4,4-5,0003").value(), (Frames{3, 4, 5, 20}));
 }
 
 TEST(FrameNumbers, RefusesTheRest) {
-  for (const char* text : {"", "a", "1-", "-1", "1-2-3", "5-1", "1-10x0", "1-10x", "1,,2", "1,", "1 2", "1.5",
-                           "1x2", "1-10x-1", "99999999999999999999"}) {
+  for (const char* text : {"", "a", "1-", "--1", "1--2", "+1", "1-2-3", "5-1", "1-10x0", "1-10x", "1,,2",
+                           "1,", "1 2", "1.5", "1x2", "1-10x-1", "99999999999999999999"}) {
     const auto frames = parse_frame_numbers(text);
     ASSERT_FALSE(frames.ok()) << text;
     EXPECT_EQ(frames.status().code(), StatusCode::kInvalidArgument);
@@ -108,6 +115,7 @@ TEST(FrameNumbers, RefusesTheRest) {
   }
   EXPECT_FALSE(parse_frame_numbers("0-9223372036854775807").ok());
   EXPECT_FALSE(parse_frame_numbers("1-6000000,1-6000000").ok());
+  EXPECT_FALSE(parse_frame_numbers("1000000000000000000").ok());
 }
 
 TEST(FrameNumbers, WritesTheShortestText) {
@@ -120,7 +128,7 @@ TEST(FrameNumbers, WritesTheShortestText) {
 }
 
 TEST(FrameNumbers, TextAndNumbersAreOne) {
-  for (const char* text : {"1-10x2,20", "3", "0-4,6-8,20-100x5", "2,4,7"}) {
+  for (const char* text : {"1-10x2,20", "3", "0-4,6-8,20-100x5", "2,4,7", "-3--1", "-9--1x4,0"}) {
     const Frames frames = parse_frame_numbers(text).value();
     EXPECT_EQ(parse_frame_numbers(frame_numbers_text(frames)).value(), frames) << text;
   }

@@ -141,7 +141,15 @@ std::vector<FailureMap> failure_maps(Frames frames, const DiagnosedInput& input,
 
 Diagnosis diagnose(Frames frames, const DiagnosedInput& said) {
   if (frames.empty()) return {};
-  const Form form = form_of(frames, said);
+  Form form = form_of(frames, said);
+  std::vector<DiagnosedFrame> ranged;
+  if (form.range != kWholeRange) {
+    ranged.assign(frames.begin(), frames.end());
+    for (DiagnosedFrame& frame : ranged)
+      scale_depth(form.range, DepthKind::kDeviceReversed, frame.depth);
+    frames = ranged;
+    form.kind = form_of(frames, said).kind;
+  }
   DiagnosedInput input = said;
   input.depth_kind = form.kind.value_or(said.depth_kind);
   const Lateness lateness = find_lateness(frames, input);

@@ -24,16 +24,19 @@ struct DiagnosedFrame {
   Vec2 jitter = {};                   // as the input says
   std::vector<float> luminance = {};  // linear
   std::vector<std::array<float, 3>> colour =
-      {};                           // the same in R, G and B; a few frames of a sequence suffice
-  std::vector<Vec2> velocity = {};  // values of the channels, whatever they mean
-  std::vector<float> depth = {};    // the same
-  std::optional<Matrix> world_to_ndc = {};
+      {};                                   // the same in R, G and B; a few frames of a sequence suffice
+  std::vector<Vec2> velocity = {};          // values of the channels, whatever they mean
+  std::vector<float> depth = {};            // the same
+  std::optional<Matrix> world_to_ndc = {};  // the same
 };
 
 // What the input says that they mean.
 struct DiagnosedInput {
-  VelocityUnits units = {};
+  VelocityUnits units = {};  // without offset
   DepthKind depth_kind = DepthKind::kLinear;
+  Vec2 depth_range = kWholeRange;  // which the frames' depth has gone through
+  Vec2 velocity_offset = {};       // which their velocity has lost
+  CameraSense camera = {};
   float near_plane = 1;
   Extent output = {};
   bool dilated = false;    // velocity is said to be

@@ -10,48 +10,20 @@
 namespace quincunx::tools {
 namespace {
 
-Matrix transposed(Matrix matrix) {
-  for (std::size_t row = 0; row < 4; ++row)
-    for (std::size_t column = 0; column < row; ++column)
-      std::swap(matrix[4 * row + column], matrix[4 * column + row]);
-  return matrix;
+CameraSense sense_in(const Scene& scene, const DepthGuess& guess) {
+  const CameraSense stated = scene.input.camera;
+  return {stated.unit != guess.other_unit, stated.flipped != guess.flipped,
+          scene.form.transposed.value_or(stated.transposed)};
 }
 
-std::optional<Matrix> matrix_at(const Scene& scene, std::size_t i, Camera camera) {
-  const int later = camera == Camera::kLast ? -1 : camera == Camera::kNext ? 1 : 0;
+std::optional<Matrix> matrix_at(const Scene& scene, std::size_t i, const DepthGuess& guess) {
+  const int later = guess.camera == Camera::kLast ? -1 : guess.camera == Camera::kNext ? 1 : 0;
   const auto from =
       static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + later);  // huge before the first
   if (from >= scene.frames.size()) return std::nullopt;
   const DiagnosedFrame& frame = scene.frames[from];
   if (frame.number != scene.frames[i].number + later || !frame.world_to_ndc) return std::nullopt;
-  return scene.form.transposed.value_or(false) ? transposed(*frame.world_to_ndc) : *frame.world_to_ndc;
-}
-
-// Whether a matrix is that of a camera with a lens: strictly, or so that it may be one.
-struct CameraForm {
-  bool is = false;
-  bool may_be = false;
-};
-
-CameraForm camera_form(const Matrix& m, Extent extent) {
-  using Vector = std::array<double, 3>;
-  const auto dot = [](const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
-  Vector x = {m[0], m[4], m[8]}, y = {m[1], m[5], m[9]};
-  const Vector w = {m[3], m[7], m[11]};
-  const double ahead = std::sqrt(dot(w, w));
-  if (!(ahead > 0)) return {};
-  const double right = dot(x, w) / dot(w, w), up = dot(y, w) / dot(w, w);  // the lens may be shifted
-  for (std::size_t k = 0; k < 3; ++k)
-    x[k] -= right * w[k], y[k] -= up * w[k];
-  const double across = std::sqrt(dot(x, x)), down = std::sqrt(dot(y, y));
-  const double skew = std::abs(dot(x, y)) / (across * down);
-  const double aspect = across * extent.width / (down * extent.height);  // of a pixel
-  const auto within = [&](double unit, double right_angle, double square) {
-    return std::abs(std::log(ahead)) < unit && skew < right_angle && std::abs(std::log(aspect)) < square;
-  };
-  constexpr double kShift = 1;  // half pictures
-  return {.is = within(.01, .001, .7) && std::abs(right) < kShift && std::abs(up) < kShift,
-          .may_be = within(.1, .05, 1.6)};
+  return to_screen(*frame.world_to_ndc, sense_in(scene, guess));
 }
 
 // Whether matrices are those of cameras only if they are transposed, or only if not; nothing where either may be.
@@ -86,6 +58,46 @@ struct Flatness {
     inverse += std::abs(inverted) < kStraight * bend ? 1 : 0;
   }
 };
+
+// Returns what makes distances of depth that is negative, or goes evenly from one distance at 0 to another at 1: on a
+// flat surface 1 / (value - `there`) is affine, where `there` is the value at the camera.
+Vec2 find_range(Frames frames) {
+  constexpr double kNear = .2, kLeastBend = 1e-6, kSame = .02,
+                   kMost = .6;  // parts of the value; of the votes
+  constexpr std::size_t kLeast = 200;
+  std::size_t below = 0, above = 0, beyond = 0;
+  std::vector<std::pair<double, double>> votes;  // for `there`, and the value
+  for (const DiagnosedFrame& frame : frames) {
+    const auto width = static_cast<std::size_t>(frame.render.width);
+    for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+      below += frame.depth[i] < 0 ? 1 : 0;
+      above += frame.depth[i] > 0 && frame.depth[i] < 1e9f ? 1 : 0;
+      beyond += frame.depth[i] > 1 ? 1 : 0;
+      for (const std::size_t step : {std::size_t{1}, width}) {
+        if (step == 1 ? i % width + 2 >= width : i + 2 * width >= frame.depth.size()) continue;
+        const double a = frame.depth[i], b = frame.depth[i + step], c = frame.depth[i + 2 * step];
+        const double bend = a - 2 * b + c;
+        // Where the bend is most of the difference a surface ends.
+        if (a > 0 && c > 0 && std::abs(c - a) < kNear * b && std::abs(bend) > kLeastBend * b &&
+            std::abs(bend) < kNear * std::abs(c - a))
+          votes.emplace_back((2 * a * c - b * (a + c)) / bend, b);
+      }
+    }
+  }
+  if (below > above) return {0, -1};
+  if (votes.size() < kLeast || below + beyond > 0) return kWholeRange;
+  std::sort(votes.begin(), votes.end());
+  const double there = votes[votes.size() / 2].first;
+  double same = 0, sum = 0;
+  for (const auto& [vote, value] : votes)
+    same += std::abs(vote - there) < kSame * value ? 1 : 0, sum += value;
+  const double value = sum / static_cast<double>(votes.size());
+  // Distances have 0; of device depth, which is affine itself, `there` is anywhere.
+  if (!(std::abs(there) > 2 * kSame * value && same > kMost * static_cast<double>(votes.size())))
+    return kWholeRange;
+  const auto zero = static_cast<float>(there);
+  return zero > value ? Vec2{zero, zero - 1} : Vec2{-zero, 1 - zero};
+}
 
 // Device depth lies between 0 and 1, and most of a picture is more than two near planes away.
 std::optional<DepthKind> find_kind(Frames frames) {
@@ -204,11 +216,10 @@ Foretold foretold_of(const Scene& scene, const std::vector<Motion>& motion, floa
 
 std::size_t faults_of(const DiagnosedInput& input, const DepthGuess& guess) {
   return (guess.near_factor != 1 ? 1u : 0u) + (guess.kind != input.depth_kind ? 1u : 0u) +
-         (guess.camera != Camera::kStated ? 1u : 0u);
+         (guess.camera != Camera::kStated ? 1u : 0u) + (guess.other_unit || guess.flipped ? 1u : 0u);
 }
 
-// Returns the factor of the near plane with which depth of this kind tells the motion best under a camera: that of
-// linear depth has no effect.
+// Returns the factor of the near plane, or of linear depth, with which the motion is told best under a camera.
 float fitting_near(const Scene& scene, DepthKind kind, Camera which) {
   constexpr std::size_t kEnough = 300;  // places of a pair
   const auto error = [&](float factor) {
@@ -234,23 +245,69 @@ float fitting_near(const Scene& scene, DepthKind kind, Camera which) {
   search(1, .5f, 28);
   for (const float step : {.125f, .03f, .008f})
     search(best, step, 4);
-  return best;
+  const float ten = std::pow(10.0f, std::round(std::log10(best)));  // of metres and millimetres
+  return std::abs(best / ten - 1) < .015f ? ten : best;
 }
 
 // The input's word first; other kinds only where depth's form does not say which it is.
 std::vector<DepthGuess> depth_guesses(const Scene& scene) {
   const DepthKind stated = scene.input.depth_kind;
   std::vector<DepthGuess> guesses = {{stated}};
+  const bool told = scene.motion.knows_motion && agrees(scene.pairs, scene.motion.motion,
+                                                        camera_motion_of(scene, guesses[0]), step_of(scene));
   for (const Camera camera : {Camera::kStated, Camera::kLast, Camera::kNext}) {
     for (const DepthKind kind : {DepthKind::kLinear, DepthKind::kDevice, DepthKind::kDeviceReversed}) {
       if (kind == stated ? camera != Camera::kStated : !scene.form.kind) guesses.push_back({kind, camera});
     }
     constexpr float kLeast = 1.1f;
-    if (!scene.motion.knows_motion || stated == DepthKind::kLinear) continue;
+    // Linear depth is seldom in another unit than the camera.
+    if (!scene.motion.knows_motion || (stated == DepthKind::kLinear && (camera != Camera::kStated || told)))
+      continue;
     const float factor = fitting_near(scene, stated, camera);
     if (factor > kLeast || factor * kLeast < 1) guesses.push_back({stated, camera, factor});
   }
+  for (const auto& [unit, flipped] : {std::pair(true, false), {false, true}, {true, true}})
+    guesses.push_back({.kind = stated, .other_unit = unit, .flipped = flipped});
   return guesses;
+}
+
+// Whether depth grows with distance, by rims: what comes out from behind another surface was hidden, and that one was
+// not, whatever the values mean.
+Votes grows_with_distance(const Scene& scene) {
+  constexpr float kOther = .1f;  // of the value
+  const auto alike = [](float a, float b) {
+    return std::abs(a - b) < kOther * std::max(std::abs(a), std::abs(b));
+  };
+  Votes votes;
+  for (const Pair& pair : scene.pairs) {
+    const DiagnosedFrame &now = scene.frames[pair.now], &before = scene.frames[pair.now - 1];
+    if (now.depth.empty() || now.velocity.empty() || before.depth.empty() || now.render != before.render)
+      continue;
+    const Vec2 step = difference(scene.motion.jitter[pair.now], scene.motion.jitter[pair.now - 1]);
+    const auto was_seen = [&](int x, int y) {  // or nobody knows
+      const Vec2 moved = own_motion(scene, pair, x, y);
+      const float at_x = static_cast<float>(x) - moved.x + step.x,
+                  at_y = static_cast<float>(y) - moved.y + step.y;
+      if (!(at_x >= 0 && at_y >= 0 && at_x < static_cast<float>(now.render.width - 1) &&
+            at_y < static_cast<float>(now.render.height - 1)))
+        return true;
+      for (int i = 0; i < 4; ++i) {
+        const std::size_t at =
+            pixel_of(before, static_cast<int>(at_x) + i % 2, static_cast<int>(at_y) + i / 2);
+        if (alike(now.depth[pixel_of(now, x, y)], before.depth[at])) return true;
+      }
+      return false;
+    };
+    for (int i = 0; i < 2 * (now.render.width - 1) * (now.render.height - 1); ++i) {
+      const int x = i / 2 % (now.render.width - 1), y = i / 2 / (now.render.width - 1);
+      const int next_x = x + i % 2, next_y = y + 1 - i % 2;
+      const float depth = now.depth[pixel_of(now, x, y)], beside = now.depth[pixel_of(now, next_x, next_y)];
+      if (alike(depth, beside) || !std::isfinite(depth + beside)) continue;
+      const bool seen = was_seen(x, y);
+      if (seen != was_seen(next_x, next_y)) votes.add(seen == (depth < beside));
+    }
+  }
+  return votes;
 }
 
 // Whether colours are foretold better than by no motion.
@@ -289,7 +346,9 @@ bool agrees(const std::vector<Pair>& pairs, const std::vector<Motion>& motion,
 }
 
 Form form_of(Frames frames, const DiagnosedInput& input) {
-  return {input.depth_kind, find_kind(frames), find_transposed(frames)};
+  Form form = {input.depth_kind, find_kind(frames), find_transposed(frames), kWholeRange};
+  if (!form.kind || form.kind == DepthKind::kLinear) form.range = find_range(frames);
+  return form;
 }
 
 std::vector<Motion> stated_camera_motion(Frames frames, const DiagnosedInput& input, const Form& form,
@@ -302,9 +361,9 @@ std::vector<Motion> stated_camera_motion(Frames frames, const DiagnosedInput& in
 
 std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess,
                                       int back) {
-  const auto now = matrix_at(scene, pair.now, guess.camera);
+  const auto now = matrix_at(scene, pair.now, guess);
   const auto other = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(pair.now) - back);
-  const auto before = matrix_at(scene, other, guess.camera);
+  const auto before = matrix_at(scene, other, guess);
   if (!now || !before) return std::nullopt;
   return camera_motion(*now, *before, scene.input.near_plane * guess.near_factor);
 }
@@ -318,11 +377,19 @@ Vec2 camera_moves(const CameraMotion& camera, Vec2 at, float depth, Extent exten
   return {(x - row(0) / w) * width / 2, (row(1) / w - y) * height / 2};
 }
 
+std::string range_option(const DiagnosedInput& input, Vec2 range) {
+  const auto at = [&](float value) { return range.x + (range.y - range.x) * value; };
+  return fmt::format("--depth-range {:.5g},{:.5g}", at(input.depth_range.x), at(input.depth_range.y));
+}
+
 DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   const DiagnosedInput& input = scene.input;
   const Form& form = scene.form;
   Finding depth = {.subject = "depth", .says = scene.frames[0].depth.empty() ? "none" : name_of(form.stated)};
-  Finding camera = {.subject = "camera", .says = scene.frames[0].world_to_ndc ? "worldToNDC" : "none"};
+  Finding camera = {.subject = "camera",
+                    .says = !scene.frames[0].world_to_ndc   ? "none"
+                            : input.camera == CameraSense{} ? "worldToNDC"
+                                                            : text_of(input.camera)};
   const std::vector<DepthGuess> guesses = depth_guesses(scene);
   std::vector<std::vector<Motion>> motions;
   for (const DepthGuess& guess : guesses)
@@ -338,21 +405,28 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   };
   const bool explained = explains(chosen);
   if (!explained) chosen = 0;
-  const DepthGuess best = guesses[chosen];
+  DepthGuess best = guesses[chosen];
   Rivals kinds, cameras;
   for (std::size_t g = 0; g < guesses.size(); ++g) {
     const Comparison compared =
         compare(scene.pairs, scene.frames, candidates[chosen].foretold, candidates[g].foretold);
-    if (guesses[g].camera == best.camera && guesses[g].kind != best.kind) kinds.add(compared, {"kind"});
-    if (guesses[g].kind == best.kind && guesses[g].camera != best.camera && guesses[g].near_factor == 1)
+    const DepthGuess& guess = guesses[g];
+    const bool same_sense = guess.other_unit == best.other_unit && guess.flipped == best.flipped;
+    if (guess.camera == best.camera && guess.kind != best.kind) kinds.add(compared, {"kind"});
+    if (guess.kind == best.kind && guess.camera != best.camera && guess.near_factor == 1)
       cameras.add(compared, {"frame"});
+    if (guess.kind == best.kind && guess.camera == best.camera && !same_sense)
+      cameras.add(compared, {"sense"});
   }
+  const char* scale = best.kind == DepthKind::kLinear ? "unit" : "near plane";
   for (const float factor : {.5f, 2.0f}) {
-    if (best.kind == DepthKind::kLinear) break;
-    const auto motion = camera_motion_of(scene, {best.kind, best.camera, best.near_factor * factor});
+    if (best.kind == DepthKind::kLinear && !scene.frames[0].world_to_ndc) break;
+    DepthGuess other = best;
+    other.near_factor *= factor;
+    const auto motion = camera_motion_of(scene, other);
     kinds.add(
         compare(scene.pairs, scene.frames, candidates[chosen].foretold, foretold_of(scene, motion, step)),
-        {"near plane"});
+        {scale});
   }
   kinds.judge(depth);
   cameras.judge(camera);
@@ -360,21 +434,46 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   if (!form.transposed) camera.open.emplace_back("transposed");
   if (form.kind) {
     depth.verdict = Verdict::kRight;
-    if (!explained && best.kind != DepthKind::kLinear) depth.open = {"near plane"};
+    if (!explained && best.kind != DepthKind::kLinear) depth.open = {scale};
   }
   if (form.transposed && explained && scene.motion.knows_motion) camera.verdict = Verdict::kRight;
   const Comparison against =
       compare(scene.pairs, scene.frames, candidates[chosen].foretold, candidates[0].foretold);
+  Comparison of_kind = form.kind ? Comparison{} : against;
+  if (!form.kind && !explained && scene.motion.knows_motion) {
+    const Votes grows = grows_with_distance(scene);
+    const bool as_said = grows.most() == (best.kind != DepthKind::kDeviceReversed);
+    if (grows.agree(50, .2) && !as_said) {
+      best.kind = grows.most() ? DepthKind::kLinear : DepthKind::kDeviceReversed;
+      of_kind = {.share = grows.agreed()};
+      depth.open.clear();
+    }
+  }
+  const bool linear = best.kind == DepthKind::kLinear;
+  const float unit = linear ? best.near_factor : 1;
+  if (form.range != kWholeRange || unit != 1) {
+    const Vec2 range = product(form.range, {unit, unit});
+    const bool negative = form.range == Vec2{0, -1};
+    find_wrong(depth,
+               negative                    ? "sign"
+               : form.range != kWholeRange ? "range"
+                                           : "unit",
+               negative ? "negative" : fmt::format("from {:.4g} at 0 to {:.4g} at 1", range.x, range.y),
+               range_option(input, range), form.range != kWholeRange ? Comparison{} : against);
+  }
   if (best.kind != form.stated) {
     const char* kind = name_of(best.kind);
-    find_wrong(depth, "kind", kind, fmt::format("--depth-kind {}", kind), form.kind ? Comparison{} : against);
+    find_wrong(depth, "kind", kind, fmt::format("--depth-kind {}", kind), of_kind);
   }
-  if (best.near_factor != 1) {
+  if (best.near_factor != 1 && !linear) {
     const std::string near_plane = fmt::format("{:.4g}", input.near_plane * best.near_factor);
     find_wrong(depth, "near plane", "a near plane at " + near_plane, "--near " + near_plane, against);
   }
-  if (form.transposed.value_or(false))
-    find_wrong(camera, "transposed", "its transpose", "write it for row vectors", {});
+  const CameraSense fits = sense_in(scene, best);
+  if (fits.transposed != input.camera.transposed)
+    find_wrong(camera, "transposed", "its transpose", "--world-to-ndc " + text_of(fits), {});
+  else if (fits != input.camera)
+    find_wrong(camera, "sense", text_of(fits), "--world-to-ndc " + text_of(fits), against);
   if (best.camera != Camera::kStated) {
     find_wrong(camera, "frame", best.camera == Camera::kLast ? "the last frame's" : "the next frame's",
                "write the camera and the motion of one frame", against);

@@ -41,20 +41,26 @@ class Search {
     return result;
   }
 
+  // Mean over the places that stay within the picture, with the shifts of `like`: else shorter motion would win.
+  double inside_error(const std::vector<Motion>& motion, const Foretold& like) const {
+    double sum = 0, count = 0;
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      if (like.errors[p].empty()) continue;
+      const std::vector<float> light =
+          foretold_light(pairs_[p], planes_[pairs_[p].before], motion[p], like.shift[p]);
+      for (std::size_t i = 0; i < light.size(); ++i) {
+        if (light[i] < 0) continue;
+        const float error = std::min(std::abs(light[i] - pairs_[p].places[i].light), kMostError);
+        sum += error * error, count += 1;
+      }
+    }
+    return count > 0 ? sum / count : 1;
+  }
+
   std::size_t places() const {
     std::size_t sum = 0;
     for (const Pair& pair : pairs_)
       sum += pair.places.size();
-    return sum;
-  }
-
-  // Errors with the shift that fits each pair best, whatever the jitter; more than `most` is not looked at closely.
-  double least_error(const std::vector<Motion>& motion, double most) const {
-    constexpr std::size_t kEnough = 5;  // pairs, spread over all
-    const std::size_t stride = std::max<std::size_t>(pairs_.size() / kEnough, 1);
-    double sum = 0;
-    for (std::size_t p = 0; p < pairs_.size() && sum <= most; p += stride)
-      sum += tools::least_error(pairs_[p], planes_[pairs_[p].before], motion[p]);
     return sum;
   }
 
@@ -68,24 +74,6 @@ class Search {
   const std::vector<Plane>& planes_;
   const std::vector<Pair>& pairs_;
 };
-
-// Returns guesses of motion worth a second look: the input's own first, then those that foretell best with any shift.
-std::vector<MotionGuess> best_guesses(const Search& search, const std::vector<MotionGuess>& guesses) {
-  constexpr std::size_t kKept = 6;
-  std::vector<std::pair<double, std::size_t>> order;  // the best so far
-  for (std::size_t g = 1; g < guesses.size(); ++g) {
-    // Where guesses come to the same, the simpler goes first.
-    const double handicap = 1 + .002 * static_cast<double>(faults_of(guesses[g]).size());
-    const double most = order.size() < kKept ? std::numeric_limits<double>::max() : order.back().first;
-    order.emplace_back(search.least_error(search.motion(guesses[g]), most) * handicap, g);
-    std::sort(order.begin(), order.end());
-    if (order.size() > kKept) order.pop_back();
-  }
-  std::vector<MotionGuess> kept = {guesses[0]};
-  for (const auto& [error, g] : order)
-    kept.push_back(guesses[g]);
-  return kept;
-}
 
 // How much of a jitter's steps is in the motion, at places all over the picture: -1 where each position is that in its
 // jittered picture. Motion itself changes smoothly, jitter does not. Where surfaces change it is any number.
@@ -157,13 +145,15 @@ std::optional<JitterGuess> jitter_in_motion(Frames frames, const DiagnosedInput&
 
 // Returns what might be mistaken for a guess.
 std::vector<MotionGuess> toggled(const MotionGuess& guess) {
-  std::vector<MotionGuess> rivals(6, guess);
+  std::vector<MotionGuess> rivals(8, guess);
   rivals[0].flip_x = !guess.flip_x;
   rivals[1].flip_y = !guess.flip_y;
   rivals[2].flip_x = !guess.flip_x, rivals[2].flip_y = !guess.flip_y;
   rivals[3].swapped = !guess.swapped;
   rivals[4].unit = Unit::kNothing;
-  rivals[5].unit = Unit::kOutputPixels;
+  rivals[5].unit = Unit::kOutputPixels, rivals[5].length = {1, 1};
+  rivals[6].length = product(guess.length, {2, 2});
+  rivals[7].length = product(guess.length, {.5f, .5f});
   for (const int later : {-1, 1}) {
     rivals.push_back(guess);
     rivals.back().later = guess.later == later ? 0 : later;
@@ -197,7 +187,7 @@ CameraWord word_of_camera(const Search& search, const DiagnosedInput& input, Ext
   // A near plane elsewhere makes motion longer or shorter, too.
   const bool lengths = input.depth_kind == DepthKind::kLinear;
   std::erase_if(guesses, [&](const MotionGuess& guess) {
-    return guess.later != 0 || (guess.unit != Unit::kStated && !lengths);
+    return guess.later != 0 || (!keeps_unit(guess) && !lengths);
   });
   std::vector<std::vector<Motion>> fields;
   for (const MotionGuess& guess : guesses)
@@ -294,14 +284,35 @@ void foretell_all(const Search& search, Guesses& guesses) {
 // Believes motion in another unit only where it foretells better than none.
 void choose_guess(const Search& search, const std::vector<Pair>& pairs, Frames frames, Guesses& guesses) {
   guesses.chosen = choose(pairs, frames, guesses.candidates);
-  if (guesses.motion().unit == Unit::kStated) return;
+  if (keeps_unit(guesses.motion())) return;
   const std::vector<Motion> rest = at_rest(pairs);
   if (clear(search.compared(guesses.best(), search.foretold(rest, guesses.jitter())))) return;
   for (std::size_t m = 0; m < guesses.motions.size(); ++m) {
     for (std::size_t j = 0; j < guesses.jitters.size(); ++j)
-      if (guesses.motions[m].unit != Unit::kStated) guesses.candidates[guesses.index(m, j)].foretold = {};
+      if (!keeps_unit(guesses.motions[m])) guesses.candidates[guesses.index(m, j)].foretold = {};
   }
   guesses.chosen = choose(pairs, frames, guesses.candidates);
+}
+
+// Fits a length that was guessed more closely, with the jitter that is believed.
+void fit_length(const Search& search, Guesses& guesses) {
+  const std::size_t m = guesses.chosen_motion();
+  MotionGuess& guess = guesses.motions[m];
+  if (guess.length == simple(product(guess.length, {1.001f, 1.001f}), .01f)) return;  // which is a simple one
+  double least = search.inside_error(guesses.fields[m], guesses.best());
+  for (const float step : {.12f, .06f, .03f, .015f, .008f}) {
+    for (const Vec2 axes : {Vec2{1, 1}, {-1, -1}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      MotionGuess other = guess;
+      other.length = product(guess.length, {std::exp2(step * axes.x), std::exp2(step * axes.y)});
+      const double error = search.inside_error(search.motion(other), guesses.best());
+      if (error < least) least = error, guess = other;
+    }
+  }
+  guess.length = simple(guess.length, .01f);
+  guesses.fields[m] = search.motion(guess);
+  for (std::size_t j = 0; j < guesses.jitters.size(); ++j)
+    guesses.candidates[guesses.index(m, j)].foretold = {};
+  foretold(search, guesses, m, guesses.chosen_jitter());
 }
 
 // Believes the camera instead where the frames do not say clearly otherwise, or only by more faults.
@@ -334,6 +345,8 @@ Rivals rivals_of_motion(const Search& search, const DiagnosedInput& input, const
     MotionGuess change = rival;
     change.flip_x ^= motion.flip_x, change.flip_y ^= motion.flip_y, change.swapped ^= motion.swapped;
     if (rival.unit == motion.unit) change.unit = Unit::kStated;
+    if (rival.length == motion.length) change.length = {1, 1};
+    change.rest = {};
     if (rival.later == motion.later) change.later = 0;
     const Comparison compared =
         search.compared(guesses.best(), search.foretold(field, guesses.jitter(), rival.later));
@@ -406,15 +419,16 @@ MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const Form&
   guesses.jitters = jitter_guesses(frames, input);
   CameraWord word;
   if (has_motion) {
-    guesses.motions = best_guesses(search, motion_guesses(input, extent));
     word = word_of_camera(search, input, extent, pairs, frames,
                           stated_camera_motion(frames, input, form, planes, pairs));
+    guesses.motions = best_guesses(frames, input, planes, pairs, word.guess.has_value());
     const auto& known = guesses.motions;
     if (word.guess && std::find(known.begin(), known.end(), *word.guess) == known.end())
       guesses.motions.push_back(*word.guess);
   }
   foretell_all(search, guesses);
   choose_guess(search, pairs, frames, guesses);
+  fit_length(search, guesses);
   heed_camera(search, pairs, frames, word, guesses);
 
   MotionAnswer answer = {.motion = guesses.fields[guesses.chosen_motion()], .shift = guesses.best().shift};
@@ -443,7 +457,7 @@ MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const Form&
 Vec2 own_motion(const Scene& scene, const Pair& pair, int x, int y) {
   const DiagnosedFrame& frame = scene.frames[pair.now];
   const MotionGuess& guess = scene.motion.guess;
-  Vec2 v = frame.velocity[pixel_of(frame, x, y)];
+  Vec2 v = difference(frame.velocity[pixel_of(frame, x, y)], guess.rest);
   if (guess.swapped) std::swap(v.x, v.y);
   const Vec2 moved = product(v, factors_of(scene.input, guess, frame.render));
   const Vec2 step = difference(scene.motion.jitter[pair.now], scene.motion.jitter[pair.now - 1]);

@@ -189,7 +189,9 @@ struct MotionGuess {
   bool swapped = false;
   bool flip_x = false;
   bool flip_y = false;
-  int later = 0;  // frames by which the motion that fits was written too early
+  int later = 0;         // frames by which the motion that fits was written too early
+  Vec2 length = {1, 1};  // factors beside the unit's
+  Vec2 rest = {};        // values of the channels at rest
 
   friend bool operator==(const MotionGuess&, const MotionGuess&) = default;
 };
@@ -199,11 +201,24 @@ Vec2 factors_of(const DiagnosedInput& input, const MotionGuess& guess, Extent ex
 
 Motion motion_of(const Pair& pair, const DiagnosedInput& input, const MotionGuess& guess, Extent extent);
 
-// Whether two guesses say the same of frames of this size.
-bool same(const DiagnosedInput& input, const MotionGuess& a, const MotionGuess& b, Extent extent);
+// Whether two guesses say the same of frames of this size, but for a part of the motion.
+bool same(const DiagnosedInput& input, const MotionGuess& a, const MotionGuess& b, Extent extent,
+          float part = .01f);
 
-// The input's word first, for both.
+// Whether a guess leaves unit, length and values at rest as the input says.
+bool keeps_unit(const MotionGuess& guess);
+
+// The input's word first.
 std::vector<MotionGuess> motion_guesses(const DiagnosedInput& input, Extent extent);
+
+// Returns a length with numbers from 1 to 4, or one over those, and the same on both axes, where that is near enough.
+Vec2 simple(Vec2 length, float room);
+
+// Returns those worth a second look: the input's word first, then those that foretell best with any shift, and of any
+// other length or values at rest the one that does, unless one is `explained` by the camera.
+std::vector<MotionGuess> best_guesses(Frames frames, const DiagnosedInput& input,
+                                      const std::vector<Plane>& planes, const std::vector<Pair>& pairs,
+                                      bool explained);
 
 std::vector<std::string> faults_of(const MotionGuess& guess);
 std::string text_of(const MotionGuess& guess);
@@ -226,6 +241,7 @@ JitterMend mend_of(const JitterGuess& guess);
 std::optional<Vec2> jitter_at(Frames frames, const DiagnosedInput& input, const JitterGuess& guess,
                               std::size_t i);
 
+// The input's word first.
 std::vector<JitterGuess> jitter_guesses(Frames frames, const DiagnosedInput& input);
 
 std::vector<std::string> faults_of(const JitterGuess& guess);
@@ -248,6 +264,8 @@ struct Form {
   DepthKind stated = DepthKind::kLinear;
   std::optional<DepthKind> kind = {};
   std::optional<bool> transposed = {};
+  Vec2 range =
+      kWholeRange;  // what 0 and 1 of depth stand for, where its values show that they are not distances
 };
 
 Form form_of(Frames frames, const DiagnosedInput& input);
@@ -286,8 +304,13 @@ enum class Camera : std::uint8_t { kStated, kLast, kNext };
 struct DepthGuess {
   DepthKind kind;
   Camera camera = Camera::kStated;
-  float near_factor = 1;  // the near plane's distance, over what the input says; counts for device depth
+  float near_factor = 1;  // the near plane's distance, over what the input says; of linear depth: the depth's
+  bool other_unit = false;  // the camera's sense, against what the input says
+  bool flipped = false;
 };
+
+// Returns the option by which depth goes through `range` after what the input says.
+std::string range_option(const DiagnosedInput& input, Vec2 range);
 
 // Judges depth and camera; returns the guess to believe.
 DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings);

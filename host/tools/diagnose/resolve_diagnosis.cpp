@@ -28,7 +28,7 @@ constexpr std::int64_t kMostPixels = 24'000'000;  // of all frames, in memory at
 
 // As it is taken from motion that is read, but in the channels' units.
 void take_jitter(std::vector<Vec2>& velocity, const VelocityUnits& units, Extent render, Vec2 step) {
-  Vec2 factors[] = {{1, 1}};
+  Vec2 factors[] = {{units.offset.x + 1, units.offset.y + 1}};
   to_velocity(units, render, factors);
   for (Vec2& v : velocity) {
     if (v != Vec2{}) v = {v.x + step.x / factors[0].x, v.y + step.y / factors[0].y};
@@ -65,8 +65,9 @@ void set_colour(DiagnosedFrame& frame, const std::vector<float>& rgba, bool keep
 
 Result<DiagnosedFrame> read_file(const ResolveTask& task, const ScannedFrame& scanned, bool keeps_colour) {
   SequenceFormat format = task.format;  // the values as they are in the files
-  format.units = {VelocityConvention::kScale, {1, 1}};
+  format.units = {.convention = VelocityConvention::kScale, .offset = task.format.units.offset};
   format.depth_kind = DepthKind::kDeviceReversed;
+  format.camera = {};
   const std::string path = task.input.expand(scanned.number);
   SequenceFrame read;
   if (Status status = read_frame(path, format, scanned, PixelFormat::kRGBA32F, read); !status.ok())
@@ -78,7 +79,7 @@ Result<DiagnosedFrame> read_file(const ResolveTask& task, const ScannedFrame& sc
   const auto attributes = frame_attributes(path, reader->header(), places->picture_part());
   if (!attributes.ok()) return attributes.status();
   DiagnosedFrame frame = {.number = scanned.number,
-                          .index = std::max<std::int64_t>(attributes->index.value_or(scanned.number), 0),
+                          .index = attributes->index.value_or(scanned.number),
                           .render = scanned.render,
                           .reset = scanned.reset,
                           .jitter = scanned.jitter,
@@ -172,8 +173,13 @@ std::string mend_of_recorded(const Finding& finding) {
 
 DiagnosedInput input_of(const ResolveTask& task) {
   const InputConventions& conventions = task.resolve.conventions;
-  return {.units = task.format.units,
+  VelocityUnits units = task.format.units;
+  units.offset = {};
+  return {.units = units,
           .depth_kind = task.format.depth_kind,
+          .depth_range = task.format.depth_range,
+          .velocity_offset = task.format.units.offset,
+          .camera = task.format.camera,
           .near_plane = task.format.near_plane,
           .output = task.format.output,
           .dilated = conventions.drawn_velocity == DrawnVelocity::kDilated,

@@ -87,6 +87,11 @@ std::optional<AttributeValue> value_of(const Imf::Attribute& attribute) {
     std::memcpy(matrix.data(), of_exr->getValue(), sizeof matrix);
     return matrix;
   }
+  if (const auto* of_exr = as<Imath::M44d>(attribute)) {
+    Matrix matrix;
+    std::copy_n(of_exr->getValue(), matrix.size(), matrix.begin());
+    return matrix;
+  }
   if (const auto* xy = as<Imf::Chromaticities>(attribute)) {
     return Chromaticities{xy->red.x,  xy->red.y,  xy->green.x, xy->green.y,
                           xy->blue.x, xy->blue.y, xy->white.x, xy->white.y};

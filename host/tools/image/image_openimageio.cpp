@@ -95,6 +95,12 @@ std::optional<AttributeValue> value_of(const OIIO::ParamValue& from) {
   if (type == OIIO::TypeRational) return copied<Rational>(from);
   if (type == OIIO::TypeTimeCode) return copied<TimeCode>(from);
   if (type == OIIO::TypeMatrix44) return copied<Matrix>(from);
+  if (type == TypeDesc(TypeDesc::DOUBLE, TypeDesc::MATRIX44)) {
+    const auto exact = copied<std::array<double, 16>>(from);
+    Matrix matrix;
+    std::copy(exact.begin(), exact.end(), matrix.begin());
+    return matrix;
+  }
   if (type == kChromaticitiesType) return copied<Chromaticities>(from);
   if (type == kPairType) return copied<Vec2>(from);
   if (type == TypeDesc(TypeDesc::DOUBLE, TypeDesc::VEC2)) return rounded(copied<std::array<double, 2>>(from));

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kDigitsOfSingleHash = 4;
 constexpr int kMaxDigits = 18;
+constexpr std::int64_t kLargestNumber = 999'999'999'999'999'999;  // of so many digits
 
 bool is_mark(char c) {
   return c == '#' || c == '@';
@@ -65,7 +66,7 @@ std::optional<std::int64_t> take_number(std::string_view& text, char mark = 0) {
   }
   std::int64_t number = 0;
   const auto parsed = std::from_chars(rest.data(), rest.data() + rest.size(), number);
-  if (parsed.ec != std::errc() || number < 0) return std::nullopt;
+  if (parsed.ec != std::errc() || number < -kLargestNumber || number > kLargestNumber) return std::nullopt;
   text = rest.substr(static_cast<std::size_t>(parsed.ptr - rest.data()));
   return number;
 }
@@ -148,9 +149,9 @@ std::optional<std::int64_t> FramePattern::number_in(std::string_view path) const
   }
   std::string_view digits = path.substr(prefix_.size(), path.size() - prefix_.size() - suffix_.size());
   digits.remove_prefix(std::min(digits.find_first_not_of(' '), digits.size()));
-  std::int64_t number = -1;
+  std::int64_t number = 0;
   const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (parsed.ec != std::errc() || number < 0 || expand(number) != path) return std::nullopt;
+  if (parsed.ec != std::errc() || expand(number) != path) return std::nullopt;
   return number;
 }
 
@@ -166,6 +167,10 @@ Result<std::vector<std::int64_t>> FramePattern::frames_on_disk() const {
     if (const auto number = number_in(folder + entry->path().filename().string())) frames.push_back(*number);
   }
   std::sort(frames.begin(), frames.end());
+  for (const std::int64_t number : frames) {
+    if (number < -kLargestNumber || number > kLargestNumber)
+      return bad(fmt::format("fits '{}', whose number has more than {} digits", expand(number), kMaxDigits));
+  }
   return frames;
 }
 
@@ -182,9 +187,10 @@ Result<std::vector<std::int64_t>> parse_frame_numbers(const std::string& text) {
     const std::string part = text.substr(at, comma - at);
     const auto range = parse_range(part);
     if (!range) {
-      return Status::invalid(fmt::format(
-          "'{}' is no frame or range of frames; write for example 7, 1-10 or 1-10x2, with commas between",
-          part));
+      return Status::invalid(
+          fmt::format("'{}' is no frame or range of frames; write for example 7, -3--1, 1-10 or 1-10x2, with "
+                      "commas between",
+                      part));
     }
     const std::int64_t steps = (range->last - range->first) / range->step;
     if (steps >= kMostFrames - static_cast<std::int64_t>(frames.size())) {

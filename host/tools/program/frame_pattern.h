@@ -30,11 +30,11 @@ class FramePattern {
 
   std::string expand(std::int64_t frame) const;  // the pattern itself where it has no number
 
-  // The number that expand() makes this path of; nothing for any other path, negative numbers included.
+  // The number that expand() makes this path of; nothing for any other path.
   std::optional<std::int64_t> number_in(std::string_view path) const;
 
   // Returns the frames of which there are files, in ascending order; none where the folder cannot be read. Errors:
-  // kInvalidArgument where the pattern has no number.
+  // kInvalidArgument where the pattern has no number, or a file's has more than 18 digits.
   Result<std::vector<std::int64_t>> frames_on_disk() const;
 
   // Errors: kInvalidArgument when there is no number but more than one frame: they would overwrite one
@@ -56,9 +56,9 @@ class FramePattern {
   bool has_number_ = false;
 };
 
-// Reads single frames and ranges (FIRST-LAST, FIRST-LASTxSTEP) with commas between, in any order; the result
-// ascends and holds each frame once. Errors: kInvalidArgument for anything else, for a range that runs
-// backwards, a step below 1, a negative number, or more than kMostFrames frames.
+// Reads single frames and ranges (FIRST-LAST, FIRST-LASTxSTEP; -3--1 is -3 to -1) with commas between, in any order;
+// the result ascends and holds each frame once. Errors: kInvalidArgument for anything else, for a range that runs
+// backwards, a step below 1, a number of more than 18 digits, or more than kMostFrames frames.
 inline constexpr std::int64_t kMostFrames = 10'000'000;
 Result<std::vector<std::int64_t>> parse_frame_numbers(const std::string& text);
 

@@ -30,7 +30,7 @@ inline const char* name_of(Jitter jitter) {
   return "unknown";
 }
 
-// Jitter of a frame in render pixels; index >= 0. The extents decide the number of Halton's places.
+// Jitter of a frame in render pixels. The extents decide how many places Halton has. Indices below 0 go on backwards.
 inline Vec2 jitter_of(Jitter jitter, std::int64_t index, Extent render, Extent output) {
   switch (jitter) {
     case Jitter::kNone:
@@ -40,6 +40,8 @@ inline Vec2 jitter_of(Jitter jitter, std::int64_t index, Extent render, Extent o
     case Jitter::kQuincunxHalf:
       return index % 2 == 0 ? Vec2{} : Vec2{0.5f, 0.5f};
     case Jitter::kHalton:
+      if (const auto places = static_cast<std::int64_t>(jitter_phases(render, output)); index < 0)
+        index = places - 1 - (-1 - index) % places;
       return quincunx::jitter(static_cast<std::uint64_t>(index), render, output);
   }
   return {};

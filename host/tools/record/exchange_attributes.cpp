@@ -2,6 +2,7 @@
 #include "tools/record/exchange_attributes.h"
 
 #include <fmt/format.h>
+#include <strings.h>
 
 #include <cmath>
 #include <cstdio>
@@ -99,7 +100,9 @@ bool read(const AttributeValue& value, std::int64_t& number) {
 }
 
 bool read(const AttributeValue& value, bool& flag) {
-  const auto found = as_number(value);
+  const auto* text = std::get_if<std::string>(&value);
+  const auto is = [&](const char* word) { return text != nullptr && ::strcasecmp(text->c_str(), word) == 0; };
+  const auto found = is("true") ? 1.0 : is("false") ? 0.0 : as_number(value);
   flag = found.value_or(0) != 0;
   return found && std::isfinite(*found);
 }
@@ -170,8 +173,20 @@ Result<FrameAttributes> frame_attributes(const std::string& path, const ImageHea
     }
   };
   each(attributes, take);
-  if (!attributes.jitter) take("jitter", attributes.jitter, "two numbers");
-  if (!attributes.reset) take("reset", attributes.reset, "0 or 1");
+  const auto take_short = [&]<typename Value>(const char* name, std::optional<Value>& target, auto may_be) {
+    const Attribute* attribute = header.attribute(name, part);
+    Value value = {};
+    if (target || attribute == nullptr) return;
+    if (read(attribute->value, value) && may_be(value)) {
+      target = value;
+    } else {
+      attributes.foreign.emplace_back(name);
+    }
+  };
+  take_short("jitter", attributes.jitter, [](Vec2 j) { return std::abs(j.x) <= 1 && std::abs(j.y) <= 1; });
+  take_short("reset", attributes.reset, [&](bool flag) {
+    return as_number(header.attribute("reset", part)->value).value_or(flag) == flag;
+  });
   if (attributes.near_plane && !(*attributes.near_plane > 0) && first.ok())
     first =
         Status::io(fmt::format("'{}' has an attribute 'quincunx:near' that is not a positive number", path));

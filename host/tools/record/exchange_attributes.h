@@ -15,7 +15,7 @@
 namespace quincunx::tools {
 
 // Each under its name of the exchange format ("quincunx:jitter"); jitter and reset are also read without the prefix,
-// and pairs and numbers also as text ("0.25 -0.25"), as some programs can only write that.
+// and pairs, numbers and flags also as text ("0.25 -0.25", "true"), as some programs can only write that.
 struct FrameAttributes {
   std::optional<Vec2> jitter = {};  // render pixels
   std::optional<Extent> render = {};
@@ -37,6 +37,8 @@ struct FrameAttributes {
   std::optional<Vec2> place = {};  // of a focus
   std::optional<std::string> rectangles = {};
   std::optional<float> feather = {};
+  // Of jitter and reset without prefix, those that cannot be meant: another program's.
+  std::vector<std::string> foreign = {};
 
   friend bool operator==(const FrameAttributes&, const FrameAttributes&) = default;
 };

@@ -66,6 +66,10 @@ std::optional<DepthKind> depth_kind_named(std::string_view name) {
 void to_velocity(const VelocityUnits& units, Extent extent, std::span<Vec2> motion) {
   const auto width = static_cast<float>(extent.width);
   const auto height = static_cast<float>(extent.height);
+  if (units.offset != Vec2{}) {
+    for (Vec2& m : motion)
+      m = {m.x - units.offset.x, m.y - units.offset.y};
+  }
   if (units.to_next) {
     for (Vec2& m : motion)
       m = {-m.x, -m.y};
@@ -104,6 +108,12 @@ void to_reversed_depth(DepthKind kind, float near_plane, std::span<float> depth)
     case DepthKind::kDeviceReversed:
       return;
   }
+}
+
+void scale_depth(Vec2 range, DepthKind kind, std::span<float> depth) {
+  if (range == kWholeRange) return;
+  for (float& d : depth)
+    d = std::isnan(d) ? nothing_seen(kind) : range.x + (range.y - range.x) * d;
 }
 
 float nothing_seen(DepthKind kind) {
@@ -155,11 +165,108 @@ std::optional<Rows> inverse(Rows m) {
   return result;
 }
 
+using Vector = std::array<double, 3>;
+
+double dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+bool is_orthographic(const Matrix& m) {
+  return m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] != 0;
+}
+
+// Of orthographic cameras: points move alike at every distance, unless the axis turns.
+std::optional<CameraMotion> orthographic_motion(const Matrix& now, const Matrix& before) {
+  constexpr double kStraight = 1e-5;
+  const auto row = [](const Matrix& m, std::size_t r) {
+    const double w = m[15];
+    return Vector{m[r] / w, m[4 + r] / w, m[8 + r] / w};
+  };
+  const Vector x = row(now, 0), y = row(now, 1);
+  const Vector axis = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+  const double xx = dot(x, x), xy = dot(x, y), yy = dot(y, y), area = xx * yy - xy * xy;
+  CameraMotion motion;
+  for (std::size_t r = 0; r < 2; ++r) {
+    const Vector last = row(before, r);
+    if (!(std::abs(dot(last, axis)) <= kStraight * std::sqrt(dot(last, last) * dot(axis, axis)) && area > 0))
+      return std::nullopt;
+    const double a = (dot(last, x) * yy - dot(last, y) * xy) / area;
+    const double b = (dot(last, y) * xx - dot(last, x) * xy) / area;
+    const double rest = before[12 + r] / before[15] - (a * now[12] + b * now[13]) / now[15];
+    if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(rest)) return std::nullopt;
+    motion.clip_to_previous_clip[r] = static_cast<float>(a);
+    motion.clip_to_previous_clip[4 + r] = static_cast<float>(b);
+    motion.clip_to_previous_clip[12 + r] = static_cast<float>(rest);
+  }
+  return motion;
+}
+
 }  // namespace
+
+Matrix transposed(Matrix matrix) {
+  for (std::size_t row = 0; row < 4; ++row)
+    for (std::size_t column = 0; column < row; ++column)
+      std::swap(matrix[4 * row + column], matrix[4 * column + row]);
+  return matrix;
+}
+
+CameraForm camera_form(const Matrix& m, Extent extent) {
+  Vector x = {m[0], m[4], m[8]}, y = {m[1], m[5], m[9]};
+  const Vector w = {m[3], m[7], m[11]};
+  const double ahead = std::sqrt(dot(w, w));
+  if (!(ahead > 0)) return {};
+  const double right = dot(x, w) / dot(w, w), up = dot(y, w) / dot(w, w);  // the lens may be shifted
+  for (std::size_t k = 0; k < 3; ++k)
+    x[k] -= right * w[k], y[k] -= up * w[k];
+  const double across = std::sqrt(dot(x, x)), down = std::sqrt(dot(y, y));
+  const double skew = std::abs(dot(x, y)) / (across * down);
+  const double aspect = across * extent.width / (down * extent.height);  // of a pixel
+  const auto within = [&](double unit, double right_angle, double square) {
+    return std::abs(std::log(ahead)) < unit && skew < right_angle && std::abs(std::log(aspect)) < square;
+  };
+  constexpr double kShift = 1;  // half pictures
+  return {.is = within(.01, .001, .7) && std::abs(right) < kShift && std::abs(up) < kShift,
+          .may_be = within(.1, .05, 1.6),
+          .centre = {static_cast<float>(right), static_cast<float>(up)}};
+}
+
+CameraSense sense_of(const Matrix& matrix, Extent extent) {
+  constexpr float kMiddle = .5f, kRoom = .25f;
+  const CameraForm as_is = camera_form(matrix, extent), other = camera_form(transposed(matrix), extent);
+  CameraSense sense = {.transposed = other.is && !as_is.may_be};
+  const CameraForm& form = sense.transposed ? other : as_is;
+  sense.unit =
+      form.is && std::abs(form.centre.x - kMiddle) < kRoom && std::abs(form.centre.y - kMiddle) < kRoom;
+  return sense;
+}
+
+Matrix to_screen(const Matrix& matrix, const CameraSense& sense) {
+  Matrix m = sense.transposed ? transposed(matrix) : matrix;
+  for (std::size_t row = 0; row < 16; row += 4) {
+    const float w = m[row + 3];
+    if (sense.unit) m[row] = 2 * m[row] - w, m[row + 1] = w - 2 * m[row + 1];
+    if (sense.flipped) m[row + 1] = -m[row + 1];
+  }
+  return m;
+}
+
+std::string text_of(const CameraSense& sense) {
+  return std::string(sense.unit ? "openexr" : "screen") + (sense.flipped ? ",flipped" : "") +
+         (sense.transposed ? ",transposed" : "");
+}
+
+std::optional<CameraSense> camera_sense_named(std::string_view text) {
+  for (int bits = 0; bits < 8; ++bits) {
+    const CameraSense sense = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
+    if (text_of(sense) == text) return sense;
+  }
+  return std::nullopt;
+}
 
 std::optional<CameraMotion> camera_motion(const Matrix& now, const Matrix& before, float near_plane) {
   CameraMotion motion;  // the identity
   if (now == before) return motion;
+  if (is_orthographic(now) && is_orthographic(before)) return orthographic_motion(now, before);
   const auto world_from_clip = inverse(clip_from_world(now, near_plane));
   if (!world_from_clip) return std::nullopt;
   const Rows previous = clip_from_world(before, near_plane);

@@ -19,9 +19,6 @@ float from_half(float distance) {
   return std::abs(distance - std::floor(distance) - .5f);
 }
 
-// Pixels of a frame by which its sides may be off, as they are integers.
-constexpr double kRounding = 1.5;
-
 std::string on_motion(const ResolveTask& task) {
   if (task.plan.velocity != VelocitySource::kNone) return {};
   const std::string remedy =
@@ -81,16 +78,21 @@ std::vector<ScannedFrame> sized_by_hand(const ResolveTask& task, std::vector<Sca
 
 std::string on_shape(const ResolveTask& task, const std::vector<ScannedFrame>& frames) {
   const Extent output = task.format.output;
-  const double shape = static_cast<double>(output.width) / output.height;
   for (const ScannedFrame& frame : sized_by_hand(task, frames)) {
-    const double width = frame.render.width, height = frame.render.height;
-    if (std::abs(width - height * shape) <= kRounding || std::abs(height - width / shape) <= kRounding)
-      continue;
+    const float aspect = frame.pixel_aspect, made = output_aspect(aspect, frame.render, output);
+    if (made == aspect || made == 1) continue;
+    const auto size = [&](double wider) {
+      const double height =
+          output.width * static_cast<double>(frame.render.height) / (frame.render.width * wider);
+      return fmt::format("{}x{}", output.width, std::max(std::lround(height), 1L));
+    };
+    const std::string square = aspect == 1 ? "" : fmt::format(", {} with square pixels", size(aspect));
     return fmt::format(
-        "frame {} is {}x{} pixels and the output {}x{}: the picture is stretched; {}x{} would keep its "
-        "shape",
-        frame.number, frame.render.width, frame.render.height, output.width, output.height, output.width,
-        std::max(std::lround(output.width * height / width), 1L));
+        "frame {} is {}x{} pixels{} and the output {}x{}: the picture is stretched; {} would keep its "
+        "shape{}",
+        frame.number, frame.render.width, frame.render.height,
+        aspect == 1 ? "" : fmt::format(" of aspect {:.4g}", aspect), output.width, output.height, size(1),
+        square);
   }
   return {};
 }
@@ -103,6 +105,13 @@ std::string on_size(const ResolveTask& task, const std::vector<ScannedFrame>& fr
                        output.width, output.height, frame.number, frame.render.width, frame.render.height);
   }
   return {};
+}
+
+std::string on_attributes(const ResolveTask& task) {
+  if (task.format.ignored.empty()) return {};
+  return fmt::format(
+      "the frames' attribute '{}' does not hold what it would here: it is ignored, as another program's",
+      fmt::join(task.format.ignored, "' and '"));
 }
 
 // Whoever names its files one by one reads them as any renderer's.
@@ -142,7 +151,7 @@ std::vector<Vec2> jitters_about(const FramePattern& pattern, const SequenceForma
                                 std::int64_t number) {
   constexpr std::int64_t kReach = 6;
   std::vector<Vec2> jitters;
-  for (std::int64_t n = std::max<std::int64_t>(number - kReach, 0); n <= number + kReach; ++n) {
+  for (std::int64_t n = number - kReach; n <= number + kReach; ++n) {
     const std::string path = pattern.expand(n);
     const auto reader = ImageReader::open(path);
     if (!reader.ok()) continue;
@@ -181,8 +190,8 @@ std::vector<std::string> advice_on(const ResolveTask& task) {
   std::erase_if(frames, [](const ScannedFrame& frame) { return !frame.problem.empty(); });
   if (frames.empty()) return {};
   std::vector<std::string> advice = {
-      on_motion(task),        on_jitter(task, frames), on_compression(task, frames),
-      on_shape(task, frames), on_size(task, frames),   on_recording(task)};
+      on_motion(task),       on_jitter(task, frames), on_compression(task, frames), on_shape(task, frames),
+      on_size(task, frames), on_recording(task),      on_attributes(task)};
   std::erase(advice, "");
   return advice;
 }

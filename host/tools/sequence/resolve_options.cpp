@@ -98,6 +98,28 @@ std::string set_velocity(SequenceInput& input, const std::string& text) {
       .take(text);
 }
 
+// "X,Y", or one number for both.
+std::string set_velocity_offset(SequenceInput& input, const std::string& text) {
+  const std::size_t comma = std::min(text.find(','), text.size());
+  const std::string words[] = {text.substr(0, comma), text.substr(comma < text.size() ? comma + 1 : 0)};
+  for (const auto& [word, offset] :
+       {std::pair{&words[0], &input.velocity_offset.x}, {&words[1], &input.velocity_offset.y}}) {
+    const std::string wrong = number(*offset, {.least = -1e9, .most = 1e9}).take(*word);
+    if (!wrong.empty()) return wrong;
+  }
+  return {};
+}
+
+std::string set_depth_range(SequenceInput& input, const std::string& zero, const std::string& one) {
+  for (const auto& [text, end] : {std::pair{&zero, &input.depth_range.x}, {&one, &input.depth_range.y}}) {
+    const std::string wrong = number(*end, {.least = -1e9, .most = 1e9}).take(*text);
+    if (!wrong.empty()) return wrong;
+  }
+  return input.depth_range.x == input.depth_range.y
+             ? "one distance for all leaves no depth; write --depth none"
+             : "";
+}
+
 std::string set_velocity_scale(SequenceInput& input, const std::string& x, const std::string& y) {
   VelocityUnits units{VelocityConvention::kScale, {}};
   for (const auto& [text, scale] : {std::pair{&x, &units.scale.x}, {&y, &units.scale.y}}) {
@@ -194,6 +216,11 @@ void add_channel_options(CommandLine& line, ResolveOptions& options) {
            "Or: what makes motion current - previous in parts of the image, y down")
       .excludes({"--velocity-convention"})
       .counts_if(has_channels, kMotion);
+  line.add("--velocity-offset",
+           text("X,Y", [&input](const std::string& text) { return set_velocity_offset(input, text); }),
+           "Values of motion's channels at rest, or one for both: .5 where 0 to 1 were made of them "
+           "(default: 0)")
+      .counts_if(has_channels, kMotion);
   line.add("--velocity-jittered", flag(input.velocity_jittered), "The jitter is in the motion")
       .counts_if(has_channels, kMotion);
   line.add("--drawn-velocity", choice(options.resolve.conventions.drawn_velocity),
@@ -204,9 +231,27 @@ void add_channel_options(CommandLine& line, ResolveOptions& options) {
   line.add("--depth-kind", choice(input.depth_kind, kDepthKinds),
            "linear (distance along the view axis), device (far is 1) or device-reversed (far is 0)")
       .counts_if(has_depth, "depth, not with --depth none");
+  line.add("--depth-range",
+           pair("A,B", "write for example 0,-1",
+                [&input](const std::string& zero, const std::string& one) {
+                  return set_depth_range(input, zero, one);
+                }),
+           "What depth's values of 0 and 1 stand for: 0,-1 turns its sign, 31,1 undoes white for near "
+           "(default: 0,1)")
+      .counts_if(has_depth, "depth, not with --depth none");
   line.add("--near", number(input.near_plane, {.least = 1e-9, .most = 1e9}, "D"),
            "Near plane's distance (default: attribute quincunx:near)")
       .counts_if(has_depth, "depth, not with --depth none");
+  line.add(
+      "--world-to-ndc",
+      text("SENSE",
+           [&input](const std::string& text) {
+             input.camera = camera_sense_named(text);
+             return std::string(
+                 input.camera ? "" : "write screen or openexr, with ,flipped or ,transposed behind it");
+           }),
+      "Attribute worldToNDC is: screen (-1 to 1, up) or openexr (0 to 1, down), for row vectors; ,flipped: y "
+      "the other way; ,transposed (default: as it shows)");
   line.add("--reactive", channel(input.reactive),
            "Channel that is 1 where history lies, or none, or a pattern of images (default: reactive.mask)");
   line.add("--jitter", text(options.jitter, "NAME|FILE"),

@@ -150,7 +150,7 @@ std::vector<std::int64_t> to_read(const ResolveOptions& options, const ResolveTa
     const auto next = std::lower_bound(left.begin(), left.end(), number);
     if (next != left.end() && *next - reach <= number) return false;
     if (ahead == 0 || next == left.begin()) return true;
-    return number >= (*std::prev(next) / kWindowFrames + 1) * kWindowFrames + ahead_of_first(ahead);
+    return number >= (window_of(*std::prev(next)) + 1) * kWindowFrames + ahead_of_first(ahead);
   });
   return read;
 }

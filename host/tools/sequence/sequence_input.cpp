@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -45,6 +46,7 @@ Status settle_motion(const SequenceInput& input, const std::string& path, const 
     }
     if (!channels.empty()) {
       format.units = input.units.value_or(VelocityUnits{});
+      format.units.offset = input.velocity_offset;
       format.units.jittered = input.velocity_jittered;
     }
   }
@@ -124,7 +126,13 @@ Result<SequenceFormat> settle(const SequenceInput& input, const std::string& fir
       !status.ok())
     return status;
   format.depth_kind = input.depth_kind.value_or(attributes.depth_kind.value_or(DepthKind::kLinear));
+  format.depth_range = input.depth_range;
   format.near_plane = input.near_plane.value_or(attributes.near_plane.value_or(kUnknownNear));
+  const Extent size = first.parts[picture->part].display.extent;
+  if (attributes.world_to_ndc)
+    format.camera = input.camera.value_or(sense_of(*attributes.world_to_ndc, size));
+  format.ignored = attributes.foreign;
+  if (!input.jitter.text().empty()) std::erase(format.ignored, "jitter");
   format.jitter = input.jitter;
   format.jitter.settle(attributes);
   format.cuts = input.cuts;
@@ -136,6 +144,18 @@ Result<SequenceFormat> settle(const SequenceInput& input, const std::string& fir
   format.output = input.output ? *input.output : *attributes.output;
   format.samples = samples_in(first);
   return format;
+}
+
+float output_aspect(float aspect, Extent render, Extent output) {
+  constexpr double kRounding = 1.5;  // pixels of a frame by which its sides may be off
+  const double width = render.width, height = render.height;
+  const double shape = static_cast<double>(output.width) / output.height;
+  const auto fits = [&](double wider) {
+    return std::abs(width - height * shape / wider) <= kRounding ||
+           std::abs(height - width * wider / shape) <= kRounding;
+  };
+  if (output == Extent{} || fits(1)) return aspect;
+  return fits(aspect) ? 1 : static_cast<float>(aspect * width / height / shape);
 }
 
 SceneNeeds needs_of(const SequenceFormat& format) {
@@ -225,12 +245,17 @@ std::string summary_of(const SequenceFormat& format) {
                         name_of(format.units.convention));
     if (format.units.convention == VelocityConvention::kScale)
       text += fmt::format(" {},{}", format.units.scale.x, format.units.scale.y);
+    if (const Vec2 offset = format.units.offset; offset != Vec2{})
+      text += fmt::format(" about {},{}", offset.x, offset.y);
     if (format.units.jittered) text += ", jittered";
   } else if (format.motion == MotionSource::kCamera && channels.has(InputPlane::kDepth)) {
     text += "; velocity from depth and worldToNDC";
   }
+  if (format.camera != CameraSense{}) text += fmt::format("; worldToNDC {}", text_of(format.camera));
   if (channels.has(InputPlane::kDepth)) {
     text += fmt::format("; depth {} {}", channels[InputPlane::kDepth].front(), name_of(format.depth_kind));
+    if (const Vec2 range = format.depth_range; range != kWholeRange)
+      text += fmt::format(" from {} to {}", range.x, range.y);
     if (format.depth_kind == DepthKind::kLinear) text += fmt::format(", near {}", format.near_plane);
   }
   for (std::size_t p = static_cast<std::size_t>(InputPlane::kReactive); p < kPlaneCount; ++p) {

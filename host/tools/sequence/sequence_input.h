@@ -35,10 +35,13 @@ struct SequenceInput {
   std::vector<std::string> velocity;                      // names of kChannels
   std::optional<std::vector<std::string>> next_velocity;  // channels of motion to the next frame
   std::optional<VelocityUnits> units;                     // needed for other channels than backward.u/.v
-  bool velocity_jittered = false;                         // as VelocityUnits has it
+  Vec2 velocity_offset = {};                              // as VelocityUnits has it
+  bool velocity_jittered = false;                         // the same
   std::optional<std::string> depth;                       // absent: Z where there is one; empty: none
   std::optional<DepthKind> depth_kind;                    // absent: the attribute depthKind, else linear
+  Vec2 depth_range = kWholeRange;                         // as of scale_depth()
   std::optional<float> near_plane;                        // absent: the attribute near, else kUnknownNear
+  std::optional<CameraSense> camera;                      // absent: as the first frame's matrix shows
   std::optional<std::string>
       reactive;  // absent: reactive.mask where there is one; empty: none; or files' pattern
   JitterSource jitter;
@@ -65,6 +68,7 @@ struct SequenceFormat {
   std::string converted_from;                  // the first frame's colour space; empty: light as it is wanted
   MotionSource motion = MotionSource::kNone;   // never kAutomatic
   bool needs_camera = false;                   // the attribute worldToNDC of each frame is read
+  CameraSense camera;                          // its sense
   VelocityUnits units;
   int two_way = 0;                                // frames to look ahead; 0: only earlier frames count
   NextMotion next_motion = NextMotion::kNothing;  // told where the plan accumulates
@@ -72,13 +76,15 @@ struct SequenceFormat {
   VelocityUnits next_units;
   bool background = true;  // each frame's colour covers it, without alpha: known when all headers were read
   DepthKind depth_kind = DepthKind::kLinear;
+  Vec2 depth_range = kWholeRange;
   float near_plane = kUnknownNear;
   JitterSource jitter;
   std::vector<std::int64_t> cuts;  // as SequenceInput has them
   Extent output;
   bool has_reactive() const { return channels.has(InputPlane::kReactive) || reactive_files; }
 
-  float samples = 0;  // a pixel, as Cycles says in the first frame; 0: it does not
+  float samples = 0;                 // a pixel, as Cycles says in the first frame; 0: it does not
+  std::vector<std::string> ignored;  // the first frame's attributes that look like another program's
 };
 
 // A reactive mask of its own: the first channel of a file, of the picture's view where that has it.
@@ -94,6 +100,10 @@ Result<Mask> open_mask(const std::string& path, Extent render, const std::string
 // where the first frame lacks what the command line counts on.
 Result<SequenceFormat> settle(const SequenceInput& input, const std::string& first_path,
                               const ImageHeader& first, const FrameAttributes& attributes);
+
+// Returns the pixels' aspect in an output of frames whose pixels have `aspect`: the same, or 1, where the rounding of
+// sides allows it.
+float output_aspect(float aspect, Extent render, Extent output);
 
 // Returns the needs of a scene of this format: only what the frames bring can be used.
 SceneNeeds needs_of(const SequenceFormat& format);

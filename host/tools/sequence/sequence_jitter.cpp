@@ -111,7 +111,7 @@ void JitterSource::settle(const FrameAttributes& first) {
 Result<Vec2> JitterSource::at(const std::string& path, std::int64_t number, const FrameAttributes& attributes,
                               Extent render, Extent output) const {
   if (const auto* pattern = std::get_if<Jitter>(&source_))
-    return jitter_of(*pattern, std::max<std::int64_t>(attributes.index.value_or(number), 0), render, output);
+    return jitter_of(*pattern, attributes.index.value_or(number), render, output);
   Vec2 jitter;
   if (const auto* table = std::get_if<std::shared_ptr<const Table>>(&source_)) {
     const auto found = (*table)->find(number);
@@ -120,6 +120,11 @@ Result<Vec2> JitterSource::at(const std::string& path, std::int64_t number, cons
     }
     jitter = found->second;
   } else {
+    const auto& foreign = attributes.foreign;
+    if (std::find(foreign.begin(), foreign.end(), "jitter") != foreign.end()) {
+      return Status::io(fmt::format(
+          "'{}' has an attribute 'jitter' that is not two numbers from -1 to 1; say --jitter", path));
+    }
     if (!attributes.jitter) {
       return Status::io(
           fmt::format("'{}' has no attribute 'quincunx:jitter' or 'jitter'; say --jitter", path));

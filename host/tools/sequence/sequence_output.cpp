@@ -13,6 +13,7 @@
 #include "tools/image/display_light.h"
 #include "tools/image/image_reader.h"
 #include "tools/program/atomic_file.h"
+#include "tools/record/exchange_attributes.h"
 #include "tools/sequence/sequence_channels.h"
 
 namespace quincunx::tools {
@@ -106,8 +107,8 @@ Made SequenceOutput::made(std::int64_t frame) const {
 Status SequenceOutput::write_linear(std::int64_t frame, std::span<const float> rgba, float exposure,
                                     std::span<const Attribute> kept) const {
   std::vector<Attribute> attributes(kept.begin(), kept.end());
-  attributes.push_back({"quincunx:version", 1});
-  attributes.push_back({"quincunx:frameIndex", static_cast<int>(frame)});
+  for (Attribute& own : to_attributes({.index = frame}))
+    attributes.push_back(std::move(own));
   attributes.push_back({kSettingsAttribute, settings});
   return write_light(path(frame), extent, rgba, stored, {tone_map, exposure}, attributes);
 }

@@ -103,7 +103,10 @@ Status read_pixels(ImageReader& reader, const ChannelPlaces& places, const Seque
   if (leave_pixels_open(reader.header(), targets.all())) {
     for (std::vector<std::byte>& texels : frame.texels.values)
       std::fill(texels.begin(), texels.end(), std::byte{0});
-    std::fill(frame.depth().begin(), frame.depth().end(), nothing_seen(format.depth_kind));
+    std::fill(frame.velocity().begin(), frame.velocity().end(), format.units.offset);
+    std::fill(frame.depth().begin(), frame.depth().end(),
+              format.depth_range == kWholeRange ? nothing_seen(format.depth_kind)
+                                                : std::numeric_limits<float>::quiet_NaN());
   }
   if (Status status = reader.read(targets.all()); !status.ok()) return status;
   if (format.reactive_files) {
@@ -154,10 +157,18 @@ Status read_unguarded(const std::string& path, const SequenceFormat& format, con
   frame.number = expected.number;
   frame.render = expected.render;
   frame.world_to_ndc = attributes->world_to_ndc;
+  if (frame.world_to_ndc) frame.world_to_ndc = to_screen(*frame.world_to_ndc, format.camera);
   frame.kept.clear();
   for (const char* name : kKeptAttributes) {
     if (const Attribute* attribute = reader->header().attribute(name, picture_part))
       frame.kept.push_back(*attribute);
+  }
+  if (expected.output != format.output) {  // else the frames ask for its shape
+    const float aspect = output_aspect(expected.pixel_aspect, frame.render, format.output);
+    if (std::erase_if(frame.kept, [](const Attribute& kept) { return kept.name == "pixelAspectRatio"; }) >
+            0 ||
+        aspect != 1)
+      frame.kept.push_back({"pixelAspectRatio", aspect});
   }
   if (Status status = read_pixels(reader.value(), places.value(), format, colour, frame); !status.ok())
     return status;
@@ -174,6 +185,10 @@ Status read_unguarded(const std::string& path, const SequenceFormat& format, con
   to_velocity(format.units, frame.render, frame.velocity());
   if (format.units.jittered)
     take_jitter(frame.velocity(), format.units.to_next ? expected.jitter_until : expected.jitter_since);
+  scale_depth(format.depth_range, format.depth_kind, frame.depth());
+  const auto negative =
+      std::count_if(frame.depth().begin(), frame.depth().end(), [](float d) { return d < 0; });
+  frame.negative_depth = 2 * negative > std::ssize(frame.depth());
   to_reversed_depth(format.depth_kind, format.near_plane, frame.depth());
   return {};
 }
@@ -282,7 +297,7 @@ std::vector<Vec2> turned_motion(const MotionSamples& now, const MotionSamples& n
 }
 
 std::vector<std::string> SequenceWatch::see(const SequenceFrame& frame, bool reset) {
-  std::vector<std::string> sentences = {see_motion(frame, reset), see_sky(frame, reset)};
+  std::vector<std::string> sentences = {see_motion(frame, reset), see_sky(frame, reset), see_depth(frame)};
   std::erase(sentences, "");
   last_world_to_ndc_ = frame.world_to_ndc;
   return sentences;
@@ -322,6 +337,16 @@ std::string SequenceWatch::see_sky(const SequenceFrame& frame, bool reset) {
   sky_is_known_ = true;
   return fmt::format(
       "the sky of frame {} has a motion of 0, although the camera turns: --sky-motion camera moves it",
+      frame.number);
+}
+
+std::string SequenceWatch::see_depth(const SequenceFrame& frame) {
+  if (depth_is_known_ || frame.depth().empty()) return {};
+  depth_is_known_ = true;
+  if (!frame.negative_depth) return {};
+  return fmt::format(
+      "depth is negative in most pixels of frame {}, so they count as infinitely far, or as near as can be: "
+      "--depth-range 0,-1 turns its sign, 0.5,1 is for device depth from -1 to 1",
       frame.number);
 }
 

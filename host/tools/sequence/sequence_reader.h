@@ -24,7 +24,8 @@ struct SequenceFrame {
   Extent render;
   // In the plan's formats; colour and albedo as asked for, RGBA16F or RGBA32F. Empty where not read.
   PerPlane<std::vector<std::byte>> texels;
-  std::optional<Matrix> world_to_ndc;
+  std::optional<Matrix> world_to_ndc;     // to -1 to 1, +y up
+  bool negative_depth = false;            // in most pixels of the file
   std::optional<RecordedFrame> recorded;  // then the images above are empty
   std::vector<Attribute> kept;            // the file's (camera, rate and the like); the resolved frame's too
 
@@ -81,12 +82,14 @@ class SequenceWatch {
 
   std::string see_motion(const SequenceFrame& frame, bool reset);
   std::string see_sky(const SequenceFrame& frame, bool reset);
+  std::string see_depth(const SequenceFrame& frame);
   Cells cells_of(const SequenceFrame& frame) const;
 
   ResolvePlan plan_;
   float near_plane_ = 0;
   bool motion_is_known_ = false;  // some motion was not 0, or the sentence was said
   bool sky_is_known_ = false;     // the sentence was said
+  bool depth_is_known_ = false;   // some frame's was not negative, or the sentence was said
   std::optional<Cells> first_;    // the first of the frames that are compared
   std::optional<Matrix> last_world_to_ndc_;
 };

@@ -439,8 +439,10 @@ Status SequenceResolver::finish() {
   }
   Status done = forward_.service.finish();
   collect_reports();
-  std::stable_sort(outcome_.reports.begin(), outcome_.reports.end(),
-                   [](const FrameReport& a, const FrameReport& b) { return a.frame_index < b.frame_index; });
+  std::stable_sort(
+      outcome_.reports.begin(), outcome_.reports.end(), [](const FrameReport& a, const FrameReport& b) {
+        return static_cast<std::int64_t>(a.frame_index) < static_cast<std::int64_t>(b.frame_index);
+      });
   return first.ok() ? done : first;
 }
 

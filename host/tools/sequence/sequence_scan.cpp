@@ -63,8 +63,9 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
   frame.half_colour = places->half_colour && colour->is_light();
   frame.background = places->background;
   frame.dwa = places->dwa;
-  frame.has_matrix = attributes->world_to_ndc.has_value();
+  frame.world_to_ndc = attributes->world_to_ndc;
   frame.output = attributes->output;
+  frame.pixel_aspect = reader->header().parts[(*places)[InputPlane::kColour][0]->part].pixel_aspect;
   frame.reset = attributes->reset.value_or(false) ||
                 std::binary_search(format.cuts.begin(), format.cuts.end(), frame.number);
   if (Status status = check_size(path, frame.render, attributes.value()); !status.ok()) return status;
@@ -93,18 +94,25 @@ std::vector<std::int64_t> numbers_of(const std::vector<ScannedFrame>& frames, Ke
   return numbers;
 }
 
-std::int64_t window_of(const ScannedFrame& frame) {
-  return frame.number / kWindowFrames;
-}
-
 // What a shot's first frame asks for, if a window begins with one.
 std::int64_t farthest_of_first(const ScannedFrame& begin, int ahead) {
-  return begin.opens ? begin.number + ahead_of_first(ahead) : 0;
+  return begin.opens ? begin.number + ahead_of_first(ahead) : begin.number;
 }
 
-bool all_good(const std::vector<ScannedFrame>& frames, bool ScannedFrame::*fact) {
-  return std::all_of(frames.begin(), frames.end(),
-                     [&](const ScannedFrame& frame) { return frame.*fact || !frame.problem.empty(); });
+template <typename Fact>
+bool all_good(const std::vector<ScannedFrame>& frames, Fact ScannedFrame::*fact) {
+  return std::all_of(frames.begin(), frames.end(), [&](const ScannedFrame& frame) {
+    return static_cast<bool>(frame.*fact) || !frame.problem.empty();
+  });
+}
+
+std::string camera_problem(const std::string& path, const Matrix& matrix) {
+  const bool orthographic = matrix[3] == 0 && matrix[7] == 0 && matrix[11] == 0;
+  return fmt::format("'{}' has an attribute 'worldToNDC' {}", path,
+                     orthographic
+                         ? "of an orthographic camera that turns, whose motion does not follow from depth; "
+                           "render motion, and name it with --velocity"
+                         : "that cannot be inverted");
 }
 
 }  // namespace
@@ -140,7 +148,7 @@ bool SequenceScan::background() const {
 }
 
 bool SequenceScan::has_matrices() const {
-  return all_good(frames, &ScannedFrame::has_matrix);
+  return all_good(frames, &ScannedFrame::world_to_ndc);
 }
 
 Status SequenceScan::problem() const {
@@ -197,7 +205,7 @@ std::vector<std::int64_t> with_future(const FramePattern& pattern, std::span<con
 }
 
 std::int64_t first_in_reach(const FramePattern& pattern, std::int64_t wanted, int warm_up) {
-  const std::int64_t farthest = std::max<std::int64_t>(wanted - warm_up, 0);
+  const std::int64_t farthest = wanted - warm_up;
   const auto found = pattern.frames_on_disk();
   if (found.ok() && !found->empty()) return std::clamp(found->front(), farthest, wanted);
   std::int64_t first = farthest;
@@ -211,14 +219,15 @@ std::vector<TwoWayWindow> two_way_windows(std::span<const ScannedFrame> good, in
   for (std::size_t begin = 0, end; begin < good.size(); begin = end) {
     const auto follows = [&](std::size_t i) { return i < good.size() && !good[i].reset; };
     std::optional<TwoWayWindow> window;
-    for (end = begin; end == begin || (follows(end) && window_of(good[end]) == window_of(good[begin]));
+    for (end = begin;
+         end == begin || (follows(end) && window_of(good[end].number) == window_of(good[begin].number));
          ++end) {
       if (!good[end].wanted) continue;
       if (!window) window = TwoWayWindow{end, end, end};
       window->last = end;
     }
     if (!window) continue;
-    const std::int64_t farthest = std::max((window_of(good[begin]) + 1) * kWindowFrames - 1 + ahead,
+    const std::int64_t farthest = std::max((window_of(good[begin].number) + 1) * kWindowFrames - 1 + ahead,
                                            farthest_of_first(good[begin], ahead));
     for (window->turn = end - 1; follows(window->turn + 1) && good[window->turn + 1].number <= farthest;)
       ++window->turn;
@@ -235,7 +244,7 @@ void drop_unseen(SequenceScan& scan, std::int64_t last_asked, int ahead) {
   const auto begin =
       std::find_if(last, frames.rend(), [](const ScannedFrame& frame) { return frame.reset; }).base() - 1;
   std::int64_t farthest = last_asked + ahead;
-  if (window_of(*std::find_if(begin, frames.end(), is_wanted)) == window_of(*begin))
+  if (window_of(std::find_if(begin, frames.end(), is_wanted)->number) == window_of(begin->number))
     farthest = std::max(farthest, farthest_of_first(*begin, ahead));
   std::erase_if(frames, [farthest](const ScannedFrame& frame) { return frame.number > farthest; });
 }
@@ -271,6 +280,11 @@ SequenceScan scan_sequence(const FramePattern& pattern, const SequenceFormat& fo
     frame.opens = frame.reset || before == nullptr || before->number + 1 != frame.number;
     frame.reset = frame.opens || !before->problem.empty();
     if (frame.reset) continue;
+    if (format.needs_camera && frame.problem.empty()) {
+      const Matrix now = to_screen(*frame.world_to_ndc, format.camera);
+      if (!camera_motion(now, to_screen(*before->world_to_ndc, format.camera), format.near_plane))
+        frame.problem = camera_problem(pattern.expand(frame.number), now);
+    }
     const auto parts = [](const ScannedFrame& one) {
       return Vec2{one.jitter.x / static_cast<float>(one.render.width),
                   one.jitter.y / static_cast<float>(one.render.height)};

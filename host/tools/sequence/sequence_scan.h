@@ -19,10 +19,11 @@ struct ScannedFrame {
   bool wanted = false;  // else read as history only
   Extent render = {};
   bool half_colour = true;
-  bool background = true;             // as ChannelPlaces has it
-  bool dwa = false;                   // as ChannelPlaces has it
-  bool has_matrix = false;            // the attribute worldToNDC
-  std::optional<Extent> output = {};  // the attribute outputSize
+  bool background = true;                   // as ChannelPlaces has it
+  bool dwa = false;                         // as ChannelPlaces has it
+  std::optional<Matrix> world_to_ndc = {};  // as the file has it
+  std::optional<Extent> output = {};        // the attribute outputSize
+  float pixel_aspect = 1;                   // width over height
   Vec2 jitter = {};
   Vec2 jitter_since = {};    // less that of the frame before, in parts of the picture; 0 after a reset
   Vec2 jitter_until = {};    // the same, less that of the next frame
@@ -34,6 +35,11 @@ struct ScannedFrame {
 // Frames that are resolved both ways come in windows of this many, by their numbers: any chunks of a sequence
 // have the same ones. A backward run adds what it looks ahead, so a larger window costs less time, and more memory.
 inline constexpr std::int64_t kWindowFrames = 24;
+
+// The window of a frame's number, below 0 too.
+constexpr std::int64_t window_of(std::int64_t number) {
+  return (number - (number < 0 ? kWindowFrames - 1 : 0)) / kWindowFrames;
+}
 
 // A window of frames, as indices of the good ones.
 struct TwoWayWindow {
