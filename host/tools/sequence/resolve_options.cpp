@@ -242,16 +242,16 @@ void add_channel_options(CommandLine& line, ResolveOptions& options) {
   line.add("--near", number(input.near_plane, {.least = 1e-9, .most = 1e9}, "D"),
            "Near plane's distance (default: attribute quincunx:near)")
       .counts_if(has_depth, "depth, not with --depth none");
+  Setting sense = text("SENSE", [&input](const std::string& name) {
+    input.camera = camera_sense_named(name);
+    return std::string(input.camera ? "" : "write screen or openexr, with ,flipped or ,transposed behind it");
+  });
+  for (int bits = 0; bits < 8; ++bits)
+    sense.words.push_back(text_of(CameraSense{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0}));
   line.add(
-      "--world-to-ndc",
-      text("SENSE",
-           [&input](const std::string& text) {
-             input.camera = camera_sense_named(text);
-             return std::string(
-                 input.camera ? "" : "write screen or openexr, with ,flipped or ,transposed behind it");
-           }),
-      "Attribute worldToNDC is: screen (-1 to 1, up) or openexr (0 to 1, down), for row vectors; ,flipped: y "
-      "the other way; ,transposed (default: as it shows)");
+      "--world-to-ndc", sense,
+      "Attribute worldToNDC is: screen (-1 to 1, up) or openexr (0 to 1, down), for row vectors; ,flipped: "
+      "y the other way; ,transposed (default: as it shows)");
   line.add("--reactive", channel(input.reactive),
            "Channel that is 1 where history lies, or none, or a pattern of images (default: reactive.mask)");
   line.add("--jitter", text(options.jitter, "NAME|FILE"),
