@@ -345,7 +345,7 @@ Status RenderSession::finish_files() {
 void RenderSession::collect_reports() {
   while (auto report = resolves_->next_completed()) {
     loop_->add(*report);
-    reports_.push_back(*report);
+    measured_.add(*report);
   }
 }
 

@@ -116,7 +116,7 @@ class RenderSession {
   tools::WorkQueue writer_;
 
   std::chrono::steady_clock::time_point last_delivery_;
-  std::vector<FrameReport> reports_;
+  tools::MeasuredFrames measured_;
   std::vector<tools::FrameRow> rows_;
   std::vector<double> draw_ms_, acquire_ms_, present_ms_, write_ms_;
   std::vector<std::uint64_t> bytes_in_, bytes_out_;

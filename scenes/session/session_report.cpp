@@ -73,7 +73,7 @@ tools::RunReport RenderSession::report() const {
   report.cl = {cl.platform, cl.name, cl.driver, cl.version, cl.compute_units};
   report.interop = gl::name_of(source_->bridge().kind());
   report.interop_reason = source_->bridge().reason();
-  report.passes = tools::pass_statistics(reports_, pass_timer(source_->device()));
+  report.passes = measured_.passes(pass_timer(source_->device()));
   report.steps = {
       tools::statistics_of("draw and submit", "host clock", draw_ms_),
       tools::statistics_of("wait for the frame", "host clock", acquire_ms_, bytes_in_),
@@ -81,9 +81,9 @@ tools::RunReport RenderSession::report() const {
       tools::statistics_of("hand to files", "host clock", write_ms_),
   };
   report.frames = rows_;
-  tools::add_measured(report.frames, reports_);
-  if (options_.resolve.checks_motion && !reports_.empty())
-    report.settings.emplace_back("motion check", text_of(reports_.back().motion));
+  measured_.fill(report.frames);
+  if (options_.resolve.checks_motion && !measured_.empty())
+    report.settings.emplace_back("motion check", text_of(measured_.motion()));
   if (front_) report.settings.push_back({"error front", front_->explanation});
   if (loop_->pacing().has_display()) {
     report.pacing = {loop_->run()};

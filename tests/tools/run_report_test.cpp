@@ -81,10 +81,17 @@ FrameReport two_passes(std::uint64_t frame, double resolve_ms, double present_ms
   return report;
 }
 
+MeasuredFrames measured(std::initializer_list<FrameReport> reports) {
+  MeasuredFrames frames;
+  for (const FrameReport& report : reports)
+    frames.add(report);
+  return frames;
+}
+
 TEST(PassStatistics, NamesTheClock) {
-  const FrameReport reports[] = {two_passes(0, 2, -1), two_passes(1, 4, -1)};
+  const MeasuredFrames frames = measured({two_passes(0, 2, -1), two_passes(1, 4, -1)});
   for (const PassTimer timer : {PassTimer::kEvents, PassTimer::kHostClock}) {
-    const std::vector<PassStatistics> rows = pass_statistics(reports, timer);
+    const std::vector<PassStatistics> rows = frames.passes(timer);
     ASSERT_EQ(rows.size(), 2u);
     EXPECT_EQ(rows[0].clock, name_of(timer));
     EXPECT_EQ(rows[0].median_ms, 3);
@@ -97,14 +104,35 @@ TEST(PassStatistics, NamesTheClock) {
 }
 
 TEST(PassStatistics, AFrameWithAnUnknownPassHasNoTime) {
-  const FrameReport reports[] = {two_passes(0, 2, 1), two_passes(1, 2, -1), two_passes(2, -1, -1)};
   FrameRow rows[3];
   for (int i = 0; i < 3; ++i)
     rows[i].index = i;
-  add_measured(rows, reports);
+  measured({two_passes(0, 2, 1), two_passes(1, 2, -1), two_passes(2, -1, -1)}).fill(rows);
   EXPECT_EQ(rows[0].device_ms, 3);
   EXPECT_EQ(rows[1].device_ms, -1);
   EXPECT_EQ(rows[2].device_ms, -1);
+}
+
+// A frame that is resolved both ways is reported forwards, backwards and when it is shown.
+TEST(PassStatistics, TheFirstReportOfAFrameCounts) {
+  FrameRow rows[2];
+  rows[1].index = 1;
+  measured({two_passes(0, 2, 1), two_passes(1, 4, 1), two_passes(1, 8, 1), two_passes(0, 16, 1)}).fill(rows);
+  EXPECT_EQ(rows[0].device_ms, 3);
+  EXPECT_EQ(rows[1].device_ms, 5);
+}
+
+TEST(PassStatistics, ALongRunKeepsAsManySamplesAsAMedianNeeds) {
+  Samples samples;
+  for (int i = 0; i <= 100'000; ++i)
+    samples.add(i, static_cast<std::uint64_t>(i));
+  const PassStatistics kept = samples.statistics("a", "clock");
+  EXPECT_GT(kept.count, 4'000);
+  EXPECT_LE(kept.count, 8'192);
+  EXPECT_NEAR(kept.median_ms, 50'000, 16);  // they are 16 apart
+  EXPECT_NEAR(kept.p95_ms, 95'000, 16);
+  EXPECT_NEAR(static_cast<double>(kept.bytes), 50'000, 16);
+  EXPECT_EQ(samples.total_ms(), 100'000. * 100'001 / 2);
 }
 
 TEST(RunReport, JsonHoldsEveryFrame) {

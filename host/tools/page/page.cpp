@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tools/page/page.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <cstdlib>
@@ -63,6 +64,26 @@ Json pictures_json(const ReportPictures& pictures) {
       {"kinds", std::move(kinds)},    {"frames", std::move(frames)}};
 }
 
+std::string text_in_script(const Json& figures) {
+  return safe_in_script(figures.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string page_of(const PageParts& parts, std::string_view figures) {
+  const auto shared = [](std::string_view name) { return text_of(embedded_page_files(), name); };
+  std::string page{shared("page.html")};
+  std::string script{shared("page.js")};
+  script += shared("viewer.js");
+  script += parts.script;
+  // From the end to the beginning, so that no mark is found in what was put in.
+  put(page, "/*script*/", script);
+  put(page, "/*library*/", chart_library());
+  put(page, "/*data*/", figures);
+  put(page, "/*beside*/", parts.beside);
+  put(page, "/*style*/", shared("page.css"));
+  put(page, "/*title*/", parts.title);
+  return page;
+}
+
 }  // namespace
 
 std::string_view text_of(std::span<const EmbeddedFile> files, std::string_view name) {
@@ -73,19 +94,7 @@ std::string_view text_of(std::span<const EmbeddedFile> files, std::string_view n
 }
 
 std::string make_page(const PageParts& parts, const Json& figures) {
-  const auto shared = [](std::string_view name) { return text_of(embedded_page_files(), name); };
-  std::string page{shared("page.html")};
-  std::string script{shared("page.js")};
-  script += shared("viewer.js");
-  script += parts.script;
-  // From the end to the beginning, so that no mark is found in what was put in.
-  put(page, "/*script*/", script);
-  put(page, "/*library*/", chart_library());
-  put(page, "/*data*/", safe_in_script(figures.dump(-1, ' ', false, Json::error_handler_t::replace)));
-  put(page, "/*beside*/", parts.beside);
-  put(page, "/*style*/", shared("page.css"));
-  put(page, "/*title*/", parts.title);
-  return page;
+  return page_of(parts, text_in_script(figures));
 }
 
 std::string base64(std::span<const std::uint8_t> bytes) {
@@ -103,8 +112,9 @@ std::string base64(std::span<const std::uint8_t> bytes) {
 }
 
 std::string report_page(const RunReport& report, const ReportPictures& pictures) {
-  return make_page({.title = "run report", .script = text_of(embedded_page_files(), "report.js")},
-                   {{"run", Json::parse(to_json(report))}, {"pictures", pictures_json(pictures)}});
+  return page_of({.title = "run report", .script = text_of(embedded_page_files(), "report.js")},
+                 fmt::format(R"({{"run":{},"pictures":{}}})", safe_in_script(to_json(report)),
+                             text_in_script(pictures_json(pictures))));
 }
 
 Status write_report(const std::string& base, const RunReport& report, const ReportPictures& pictures) {

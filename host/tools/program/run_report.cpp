@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
+#include <string_view>
 
 #include "tools/program/pacing_report.h"
 
@@ -219,20 +219,22 @@ Json statistics_json(const std::vector<PassStatistics>& rows) {
   return list;
 }
 
-Json frames_json(const std::vector<FrameRow>& frames) {
-  Json list = Json::array();
+// A frame a line, without a tree of all of them in memory.
+std::string frames_text(const std::vector<FrameRow>& frames) {
+  std::string text = "[";
   for (const FrameRow& frame : frames) {
-    list.push_back({{"index", frame.index},
-                    {"seconds", frame.seconds},
-                    {"render", size_json(frame.render)},
-                    {"ratio", vector_json(frame.ratio)},
-                    {"jitter", vector_json(frame.jitter)},
-                    {"frame_ms", known(frame.frame_ms)},
-                    {"device_ms", known(frame.device_ms)},
-                    {"used_previous", frame.used_previous},
-                    {"non_finite_pixels", known(frame.non_finite_pixels)}});
+    const Json row = {{"index", frame.index},
+                      {"seconds", frame.seconds},
+                      {"render", size_json(frame.render)},
+                      {"ratio", vector_json(frame.ratio)},
+                      {"jitter", vector_json(frame.jitter)},
+                      {"frame_ms", known(frame.frame_ms)},
+                      {"device_ms", known(frame.device_ms)},
+                      {"used_previous", frame.used_previous},
+                      {"non_finite_pixels", known(frame.non_finite_pixels)}};
+    text += (&frame == &frames.front() ? "\n  " : ",\n  ") + row.dump();
   }
-  return list;
+  return text + "]";
 }
 
 Json summary_json(const PacingRun& run) {
@@ -389,36 +391,59 @@ std::string to_text(const RunReport& report) {
   return text;
 }
 
-std::vector<PassStatistics> pass_statistics(std::span<const FrameReport> reports, PassTimer timer) {
-  struct Samples {
-    std::vector<double> ms;
-    std::vector<std::uint64_t> bytes;
-  };
-  std::vector<std::string> order;
-  std::map<std::string, Samples> samples;
-  for (const FrameReport& report : reports) {
-    for (const PassReport& pass : report.passes) {
-      const std::string name = name_of(pass);
-      if (!samples.contains(name)) order.push_back(name);
-      samples[name].ms.push_back(pass.ms);
-      samples[name].bytes.push_back(pass.bytes);
-    }
+void Samples::add(double ms, std::uint64_t bytes) {
+  constexpr std::size_t kMost = 8192;
+  total_ms_ += ms;
+  if (seen_++ % step_ != 0) return;
+  if (ms_.size() == kMost) {
+    for (std::size_t i = 0; i < kMost / 2; ++i)
+      ms_[i] = ms_[2 * i], bytes_[i] = bytes_[2 * i];
+    ms_.resize(kMost / 2), bytes_.resize(kMost / 2);
+    step_ *= 2;
   }
+  ms_.push_back(ms), bytes_.push_back(bytes);
+}
+
+PassStatistics Samples::statistics(std::string name, std::string clock) const {
+  return statistics_of(std::move(name), std::move(clock), ms_, bytes_);
+}
+
+void MeasuredFrames::add(const FrameReport& report) {
+  for (const PassReport& pass : report.passes) {
+    const std::string name = name_of(pass);
+    auto found =
+        std::find_if(passes_.begin(), passes_.end(), [&](const auto& one) { return one.first == name; });
+    if (found == passes_.end()) found = passes_.insert(found, {name, {}});
+    found->second.add(pass.ms, pass.bytes);
+  }
+  motion_ = rows_.empty() || motion_.verdict < report.motion.verdict ? report.motion : motion_;
+  // A frame that goes both ways has several reports, of which the first is the one forwards.
+  const auto index = static_cast<std::int64_t>(report.frame_index);
+  if (!rows_.empty() && index <= rows_.back().index) return;
+  add_report(rows_.emplace_back(FrameRow{.index = index}), report);
+}
+
+std::vector<PassStatistics> MeasuredFrames::passes(PassTimer timer) const {
   std::vector<PassStatistics> statistics;
-  for (const std::string& kernel : order) {
-    statistics.push_back(statistics_of(kernel, name_of(timer), samples[kernel].ms, samples[kernel].bytes));
+  for (const auto& [kernel, samples] : passes_) {
+    statistics.push_back(samples.statistics(kernel, name_of(timer)));
     if (statistics.back().count == 0) statistics.back().clock = name_of(PassTimer::kNone);
   }
   return statistics;
 }
 
-void add_measured(std::span<FrameRow> rows, std::span<const FrameReport> reports) {
-  auto measured = reports.begin();
+void MeasuredFrames::fill(std::span<FrameRow> rows) const {
+  auto measured = rows_.begin();
   for (FrameRow& row : rows) {
-    while (measured != reports.end() && static_cast<std::int64_t>(measured->frame_index) < row.index)
+    while (measured != rows_.end() && measured->index < row.index)
       ++measured;
-    if (measured == reports.end()) return;
-    if (static_cast<std::int64_t>(measured->frame_index) == row.index) add_report(row, *measured);
+    if (measured == rows_.end()) return;
+    if (measured->index != row.index) continue;
+    row.render = measured->render;
+    row.ratio = measured->ratio;
+    row.used_previous = measured->used_previous;
+    row.non_finite_pixels = measured->non_finite_pixels;
+    row.device_ms = measured->device_ms;
   }
 }
 
@@ -461,7 +486,7 @@ std::string to_json(const RunReport& report) {
       {"interop_reason", known(report.interop_reason)},
       {"passes", statistics_json(report.passes)},
       {"steps", statistics_json(report.steps)},
-      {"frames", frames_json(report.frames)},
+      {"frames", nullptr},
       {"pacing", pacing},
       {"busy_seconds", busy},
       {"scores", scores_json(report.scores)},
@@ -472,7 +497,10 @@ std::string to_json(const RunReport& report) {
       {"peak_memory_bytes", known(report.peak_memory_bytes)},
   };
   // Text that is not UTF-8 (a file name, say) must not stop a report.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string text = json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  constexpr std::string_view kFrames = "\n \"frames\": null";  // within a text a new line is escaped
+  text.replace(text.find(kFrames) + kFrames.size() - 4, 4, frames_text(report.frames));
+  return text;
 }
 
 }  // namespace quincunx::tools

@@ -126,12 +126,42 @@ std::string to_text(const RunReport& report);
 // Everything, each frame on its own row of "frames".
 std::string to_json(const RunReport& report);
 
-// Gathers the service's reports of the frames per kernel, in the order of first use, timed by `timer`. A kernel of
-// which no time is known is "not timed".
-std::vector<PassStatistics> pass_statistics(std::span<const FrameReport> reports, PassTimer timer);
+// Samples of a quantity, one a frame. Of a run of more than some thousand frames every second one is kept, then every
+// fourth and so on: as many as a median needs, in memory that does not grow.
+class Samples {
+ public:
+  void add(double ms, std::uint64_t bytes = 0);
+  double total_ms() const { return total_ms_; }  // of all
+  // As statistics_of(), of those that are kept.
+  PassStatistics statistics(std::string name, std::string clock) const;
 
-// Fills in what the service measured; a frame has an OpenCL time where all its passes have one. Both are in
-// frame order; rows without a report stay as they are.
-void add_measured(std::span<FrameRow> rows, std::span<const FrameReport> reports);
+ private:
+  std::uint64_t seen_ = 0, step_ = 1;
+  double total_ms_ = 0;
+  std::vector<double> ms_;
+  std::vector<std::uint64_t> bytes_;
+};
+
+// What a run keeps of the service's reports, which come in frame order: 72 bytes of each frame, and samples.
+class MeasuredFrames {
+ public:
+  void add(const FrameReport& report);
+  bool empty() const { return rows_.empty(); }
+
+  // Each kernel in the order of first use, timed by `timer`. A kernel of which no time is known is "not timed".
+  std::vector<PassStatistics> passes(PassTimer timer) const;
+
+  // Fills in what the service measured; a frame has an OpenCL time where all its passes have one. Rows are in frame
+  // order; those without a report stay as they are.
+  void fill(std::span<FrameRow> rows) const;
+
+  // The worst that was said of motion.
+  const MotionCheck& motion() const { return motion_; }
+
+ private:
+  std::vector<FrameRow> rows_;
+  std::vector<std::pair<std::string, Samples>> passes_;
+  MotionCheck motion_;
+};
 
 }  // namespace quincunx::tools

@@ -59,14 +59,6 @@ void add_files(std::string& text, const ResolveTask& task) {
   }
 }
 
-// Two services that go both ways may say different things.
-MotionCheck worst_motion(const std::vector<FrameReport>& reports) {
-  return std::max_element(
-             reports.begin(), reports.end(),
-             [](const FrameReport& a, const FrameReport& b) { return a.motion.verdict < b.motion.verdict; })
-      ->motion;
-}
-
 }  // namespace
 
 RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task, const Device& device,
@@ -88,16 +80,16 @@ RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task,
   if (!outcome.skipped.empty()) report.settings.emplace_back("skipped", frame_numbers_text(outcome.skipped));
   const DeviceInfo& cl = device.info();
   report.cl = {cl.platform, cl.name, cl.driver, cl.version, cl.compute_units};
-  report.passes = pass_statistics(outcome.reports, pass_timer(device));
-  report.steps = {statistics_of("upload", "host clock", outcome.upload_ms),
-                  statistics_of("upload to download", "host clock", outcome.resolve_ms)};
+  report.passes = outcome.measured.passes(pass_timer(device));
+  report.steps = {outcome.upload_ms.statistics("upload", "host clock"),
+                  outcome.resolve_ms.statistics("upload to download", "host clock")};
   report.busy = outcome.busy;
   report.frames = outcome.rows;
-  add_measured(report.frames, outcome.reports);
+  outcome.measured.fill(report.frames);
   report.scores.assign(scores.begin(), scores.end());
   report.left_out = task.plan.left_out;
-  if (task.resolve.checks_motion && !outcome.reports.empty())
-    report.settings.emplace_back("motion check", text_of(worst_motion(outcome.reports)));
+  if (task.resolve.checks_motion && !outcome.measured.empty())
+    report.settings.emplace_back("motion check", text_of(outcome.measured.motion()));
   report.warnings = advice_on(task);
   report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
   if (task.output && !outcome.resolved.empty()) {
@@ -133,7 +125,7 @@ std::string listing_text(const ResolveTask& task, const std::string& diagnosis, 
   if (!task.there.empty()) text += line("There", counted(task.there));
   text += line("Make", counted(scan.wanted()));
   if (!task.stale.empty())
-    text += line("", fmt::format("{} (there, but made otherwise)", counted(task.stale)));
+    text += line("", fmt::format("{} (there, but not whole or made otherwise)", counted(task.stale)));
   text += line("Read", counted(read_frames(scan)));
   if (const Frames history = scan.history(); !history.empty())
     text += line("", fmt::format("{} (only as history)", counted(history)));

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "tools/program/clock.h"
 #include "tools/record/exchange_format.h"
@@ -49,13 +50,12 @@ SequenceResolver::SequenceResolver(const Device& device, ResolveService service,
       histories_(job_.memory),
       watch_(forward_.service.plan(), job_.format.near_plane),
       writers_(writing_threads(job_.threads), 1) {
-  for (const ScannedFrame& frame : job_.scan.frames) {
-    if (frame.problem.empty()) {
-      good_.push_back(frame);
-    } else if (frame.wanted) {
-      outcome_.skipped.push_back(frame.number);
-    }
-  }
+  good_ = std::exchange(job_.scan.frames, {});
+  scanned_ = good_.size();
+  std::erase_if(good_, [this](const ScannedFrame& frame) {
+    if (!frame.problem.empty() && frame.wanted) outcome_.skipped.push_back(frame.number);
+    return !frame.problem.empty();
+  });
 }
 
 Result<std::unique_ptr<SequenceResolver>> SequenceResolver::create(const Device& device,
@@ -161,7 +161,7 @@ Result<FrameReport> SequenceResolver::dispatch_recorded(const SequenceFrame& fra
   ResolveService& service = forward_.service;
   auto uploaded = quincunx::tools::upload(device_, service.plan(), *frame.recorded);
   if (!uploaded.ok()) return uploaded.status();
-  outcome_.upload_ms.push_back(ms_since(start));
+  outcome_.upload_ms.add(ms_since(start));
   FrameInputs& inputs = uploaded->inputs;
   if (job_.exposure > 0) inputs.exposure = job_.exposure;
   inputs.reset |= forward_.last + 1 != frame.number;
@@ -183,7 +183,7 @@ Result<FrameInputs> SequenceResolver::inputs_of(Stream& stream, const SequenceFr
   const DeviceFrame& device_frame = stream.ring[static_cast<std::size_t>(stream.count % 2)];
   const Clock::time_point start = Clock::now();
   if (Status status = upload(frame, device_frame); !status.ok()) return status;
-  outcome_.upload_ms.push_back(ms_since(start));
+  outcome_.upload_ms.add(ms_since(start));
   FrameInputs inputs;
   for (const InputImage& input : kInputs) {
     if (input.viewport != nullptr) inputs.*input.image = device_frame[plane_of(input)].view();
@@ -286,7 +286,7 @@ Status SequenceResolver::resolve_frame(const ScannedFrame& scanned) {
   if (scanned.wanted) {
     if (Status status = deliver(*frame.value(), scanned, report.value()); !status.ok()) return status;
   }
-  outcome_.resolve_ms.push_back(ms_since(start));
+  outcome_.resolve_ms.add(ms_since(start));
   ahead_->release();
   collect_reports();
   return {};
@@ -345,7 +345,7 @@ Status SequenceResolver::add_forward(std::size_t index) {
     kept.inputs = without_images(inputs.value());
     kept_.emplace(index, std::move(kept));
   }
-  outcome_.resolve_ms.push_back(ms_since(start));
+  outcome_.resolve_ms.add(ms_since(start));
   ahead_->release();
   collect_reports();
   return {};
@@ -394,7 +394,7 @@ Status SequenceResolver::add_backward(std::size_t index, const TwoWayWindow& win
     if (status.ok() && forward_.albedo) status = TwoWay::turn(*backward_->albedo, *forward_.albedo);
     if (!status.ok()) return status;
   }
-  outcome_.resolve_ms.push_back(ms_since(start));
+  outcome_.resolve_ms.add(ms_since(start));
   ahead_->release();
   collect_reports();
   return {};
@@ -424,9 +424,9 @@ Status SequenceResolver::show(std::size_t index) {
 
 void SequenceResolver::collect_reports() {
   while (auto report = forward_.service.next_completed())
-    outcome_.reports.push_back(*report);
+    outcome_.measured.add(*report);
   while (auto report = backward_ ? backward_->service.next_completed() : std::nullopt)
-    outcome_.reports.push_back(*report);
+    outcome_.measured.add(*report);
   while (forward_.albedo && (forward_.albedo->next_completed() || backward_->albedo->next_completed())) {
   }
 }
@@ -439,10 +439,6 @@ Status SequenceResolver::finish() {
   }
   Status done = forward_.service.finish();
   collect_reports();
-  std::stable_sort(
-      outcome_.reports.begin(), outcome_.reports.end(), [](const FrameReport& a, const FrameReport& b) {
-        return static_cast<std::int64_t>(a.frame_index) < static_cast<std::int64_t>(b.frame_index);
-      });
   return first.ok() ? done : first;
 }
 
@@ -497,8 +493,7 @@ Result<bool> SequenceResolver::run_steps(const std::function<void(std::int64_t)>
       status = show_window(windows[place_.window]);
     if (backward_ && !backward && status.ok() && forward_.last != good_[frame].number) bad = frame;
     ++place_.steps;
-    progress(
-        static_cast<std::int64_t>(place_.steps * job_.scan.frames.size() / (done_before + steps.size())));
+    progress(static_cast<std::int64_t>(place_.steps * scanned_ / (done_before + steps.size())));
   }
   outcome_.busy.front().seconds += ahead_->busy_seconds();
   ahead_.reset();  // it refers to `steps`
@@ -519,10 +514,7 @@ Status SequenceResolver::run(const std::function<void(std::int64_t)>& progress,
   while (ended.ok() && !ended.value())
     ended = run_steps(progress, stop);
   const Status finished = finish();
-  double resolving = 0;
-  for (const double ms : outcome_.resolve_ms)
-    resolving += ms / 1000;
-  outcome_.busy.push_back({"resolving", resolving});
+  outcome_.busy.push_back({"resolving", outcome_.resolve_ms.total_ms() / 1000});
   outcome_.busy.push_back({"writing", writers_.busy_seconds()});
   if (job_.scores != nullptr) outcome_.busy.push_back({"measuring", job_.scores->busy_seconds()});
   outcome_.wall_seconds = ms_since(start) / 1000;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// SequenceResolver: streams a sequence through the resolve service: files are read ahead, resolved and
-// written at the same time, and what is in memory does not depend on how many frames there are.
+// SequenceResolver: streams a sequence through the resolve service: files are read ahead, resolved and written at the
+// same time. Pixels in memory do not depend on how many frames there are; a frame's row of the report stays.
 #pragma once
 
 #include <array>
@@ -42,8 +42,8 @@ struct SequenceOutcome {
   std::vector<std::int64_t> resolved;  // and written
   std::vector<std::int64_t> skipped;   // wanted, but bad
   std::vector<FrameRow> rows;          // one for each resolved frame
-  std::vector<FrameReport> reports;    // one for each that was dispatched, as far as it is known
-  std::vector<double> upload_ms, resolve_ms;
+  MeasuredFrames measured;             // of all that were dispatched, as far as it is known
+  Samples upload_ms, resolve_ms;
   std::vector<BusyTime> busy;
   std::vector<std::string> warnings;  // notes on what showed in the pixels
   double wall_seconds = 0;
@@ -134,6 +134,7 @@ class SequenceResolver {
   std::optional<Stream> backward_;  // where the job looks ahead
   SequenceJob job_;
   std::vector<ScannedFrame> good_;
+  std::size_t scanned_ = 0;  // frames, good or bad
   Place place_;
   std::map<std::size_t, KeptFrame> kept_;
   SequenceHistories histories_;
