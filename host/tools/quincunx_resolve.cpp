@@ -70,8 +70,8 @@ void say_first(const ResolveOptions& options, const ResolveTask& task) {
     if (!frame.problem.empty()) spdlog::warn("{}; it is skipped", frame.problem);
   }
   if (!task.stale.empty()) {
-    spdlog::warn("{} frames are there, but made otherwise; they are made again: {}", task.stale.size(),
-                 frame_numbers_text(task.stale));
+    spdlog::warn("{} frames are there, but not whole or made otherwise; they are made again: {}",
+                 task.stale.size(), frame_numbers_text(task.stale));
   }
   if (!task.format.converted_from.empty()) {
     spdlog::info("colour is {}; it is made linear Rec. 709 (--input-colour takes another)",

@@ -10,9 +10,11 @@
 
 #include <chrono>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "sequence_fixture.h"
+#include "tools/sequence/sequence_output.h"
 
 extern char** environ;
 
@@ -148,7 +150,7 @@ TEST_F(Resume, WhatWasMadeOtherwiseIsMadeAgain) {
   resolve_to("mixed", "--method bilinear --frames 1-2");
   const auto result = resolve("'{}/f.%04d.exr' --out '{}/mixed.%04d.exr' --resume");
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.err.find("2 frames are there, but made otherwise; they are made again: 1-2"),
+  EXPECT_NE(result.err.find("2 frames are there, but not whole or made otherwise; they are made again: 1-2"),
             std::string::npos)
       << result.err;
   for (int number = 1; number <= 4; ++number)
@@ -167,6 +169,119 @@ TEST_F(Resume, AnotherShutterIsAnotherPicture) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   for (int number = 1; number <= 2; ++number)
     EXPECT_EQ(testing::read_file(output(number)), testing::read_file(output(number, "mixed"))) << number;
+}
+
+// Cut anywhere, or filled up with zeros as a copy is that was broken off.
+TEST_F(Resume, WhatIsNotWholeIsNotTakenForDone) {
+  constexpr Extent kSize = {40, 36};
+  std::vector<float> picture;
+  for (int i = 0; i < kSize.area() * 4; ++i)
+    picture.push_back(static_cast<float>(i / 16 % 13 + 1) / 16);
+  for (const char* ending : {"exr", "png", "tif", "jpg", "hdr"}) {
+    const std::string name = folder_.file(std::string("p.%04d.") + ending);
+    if (!tools::format_of(name)) continue;  // a build that knows fewer formats
+    const tools::SequenceOutput output = {
+        .pattern = tools::FramePattern::parse(name, "output").value(), .extent = kSize, .settings = "some"};
+    ASSERT_TRUE(output.write_linear(1, picture, 1, {}).ok()) << ending;
+    EXPECT_EQ(output.made(1), tools::Made::kAsWanted) << ending;
+    const std::string path = output.path(1), whole = testing::read_file(path);
+    const std::size_t step = std::max<std::size_t>(whole.size() / 61, 1);
+    for (std::size_t size = 0; size < whole.size(); size += step) {
+      std::string bytes = whole.substr(0, size);
+      std::ofstream(path, std::ios::binary) << bytes;
+      EXPECT_EQ(output.made(1), tools::Made::kOtherwise) << ending << " of " << size;
+      bytes.resize(whole.size());
+      std::ofstream(path, std::ios::binary) << bytes;
+      EXPECT_EQ(output.made(1), tools::Made::kOtherwise) << ending << " with zeros from " << size;
+    }
+  }
+}
+
+TEST_F(Resume, WhatIsBrokenIsMadeAgain) {
+  write_frames(1, 3);
+  for (const char* ending : {"exr", "png"}) {
+    const auto run = [&](const char* more) {
+      return resolve(fmt::format("'{{}}/f.%04d.exr' --out '{{}}/u.%04d.{}' {}", ending, more));
+    };
+    ASSERT_EQ(run("").exit_code, 0);
+    std::vector<std::string> paths, good;
+    for (int number = 1; number <= 3; ++number) {
+      paths.push_back(folder_.file(fmt::format("u.{:04}.{}", number, ending)));
+      good.push_back(testing::read_file(paths.back()));
+    }
+    std::filesystem::resize_file(paths[1], 0);
+    std::filesystem::resize_file(paths[2], good[2].size() * 2 / 3);
+    std::filesystem::resize_file(paths[2], good[2].size());
+    const auto result = run("--resume");
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("not whole or made otherwise; they are made again: 2-3"), std::string::npos)
+        << result.err;
+    for (std::size_t i = 0; i < paths.size(); ++i)
+      EXPECT_EQ(testing::read_file(paths[i]), good[i]) << paths[i];
+  }
+}
+
+class LongHistory : public Resume {
+ protected:
+  static constexpr int kLast = 60;  // more than a chunk looks back
+
+  void SetUp() override {
+    for (int number = 1; number <= kLast; ++number) {
+      testing::FrameFile file = frame(number);
+      file.depth = true;
+      file.sky = true;  // at rest: history counts for long
+      write_frame(input(number), file);
+    }
+  }
+
+  // The warning of a run that is asked for with --json.
+  std::string warnings(const std::string& arguments) {
+    const auto result = resolve("'{}/f.%04d.exr' --method temporal:fast --json " + arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out)["warnings"].dump();
+  }
+};
+
+// What it advises gives the pixels of a run in one go.
+TEST_F(LongHistory, AChunkSaysWhatItKnowsLess) {
+  EXPECT_EQ(warnings("--out '{}/u.%04d.exr'").find("history of"), std::string::npos);
+  const std::string chunk = "--frames 58-60 --out '{}/c.%04d.exr' ";
+  EXPECT_NE(warnings(chunk).find("frame 58 has a history of 48 frames, and in a run in one go of 57"),
+            std::string::npos);
+  EXPECT_NE(testing::read_file(output(58)), testing::read_file(output(58, "c")));
+  EXPECT_EQ(warnings(chunk + "--warm-up 57").find("history of"), std::string::npos);
+  for (int number = 58; number <= kLast; ++number)
+    EXPECT_EQ(testing::read_file(output(number)), testing::read_file(output(number, "c"))) << number;
+  // And the rest of a run, between frames that are there.
+  for (const int number : {3, 59})
+    std::filesystem::remove(output(number));
+  const std::string resume = "--out '{}/u.%04d.exr' --resume ";
+  EXPECT_NE(warnings(resume + "-n").find("frame 59 has a history of 48 frames"), std::string::npos);
+  EXPECT_EQ(warnings(resume + "--warm-up 58").find("history of"), std::string::npos);
+  EXPECT_EQ(testing::read_file(output(59)), testing::read_file(output(59, "c")));
+}
+
+TEST_F(LongHistory, ChunksAgreeOnTheirNoise) {
+  const std::string chunk =
+      "'{}/f.%04d.exr' --out '{}/u.%04d.exr' --method temporal:fast --noise auto --frames 30-31";
+  EXPECT_EQ(resolve(chunk).exit_code, 0);
+  std::filesystem::remove(output(30));
+  std::filesystem::remove(output(31));
+  std::filesystem::rename(input(33), folder_.file("not yet"));  // it is still being rendered
+  expect_refused(chunk, 1, "--noise auto with --frames needs the first 33 files of the sequence");
+  std::ofstream(input(33)) << testing::read_file(folder_.file("not yet")).substr(0, 1000);
+  expect_refused(chunk, 1, "or say --noise SPP");
+}
+
+TEST_F(LongHistory, ASeamBesideAnotherChunkIsNamed) {
+  resolve_to("u", "--method temporal:fast --frames 1-4 --noise 4");
+  const std::string next = "--out '{}/u.%04d.exr' -n --frames 5-8 ";
+  EXPECT_NE(
+      warnings(next).find("u.0004.exr', beside the frames of this run, was made otherwise: 'denoised 0.25' "
+                          "there, 'nothing' here"),
+      std::string::npos)
+      << warnings(next);
+  EXPECT_EQ(warnings(next + "--noise 4").find("beside"), std::string::npos);
 }
 
 TEST_F(Resume, LeftoversOfLivingProcessesStay) {

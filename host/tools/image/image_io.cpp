@@ -245,7 +245,12 @@ Result<LoadedImage> read_image(const std::string& path) {
                        .pixels = {},
                        .attributes = part.attributes};
   const std::size_t count = part.channels.size();
-  image.pixels.resize(static_cast<std::size_t>(image.extent.area()) * count);
+  try {
+    image.pixels.resize(static_cast<std::size_t>(image.extent.area()) * count);
+  } catch (const std::exception&) {
+    return cannot_read(
+        path, fmt::format("there is no memory for {}x{} pixels", image.extent.width, image.extent.height));
+  }
   std::vector<ChannelTarget> targets;
   for (const HeaderChannel& channel : part.channels) {
     image.channels.push_back(channel.name);
@@ -496,7 +501,8 @@ class Blocks {
   bool last_is_cut() {
     if (last_.head == 0) return false;
     bytes_.go_to(last_.offset + last_.head - 4);
-    return bytes_.take<std::uint32_t>() > bytes_.left();
+    const auto size = bytes_.take<std::uint32_t>();
+    return size == 0 || size > bytes_.left();
   }
 
   Status cut_short(std::int64_t missing) const {
@@ -525,6 +531,7 @@ std::uint64_t number_of(std::string_view bytes, bool big_endian) {
 bool tiff_is_whole(Bytes& bytes, bool big_endian) {
   constexpr std::uint64_t kStripOffsets = 273, kStripSizes = 279, kTileOffsets = 324, kTileSizes = 325;
   constexpr std::uint64_t kShort = 3, kLong = 4;
+  constexpr std::uint64_t kCompression = 259, kLzw = 5, kDeflate = 8, kOldDeflate = 32946;
   const auto number = [&](std::string_view text) { return number_of(text, big_endian); };
   const auto take = [&](std::int64_t length) { return number(bytes.take_text(length)); };
   bytes.go_to(2);
@@ -536,10 +543,12 @@ bool tiff_is_whole(Bytes& bytes, bool big_endian) {
   std::uint64_t entries = take(wide ? 8 : 2);
   place += wide ? 8 : 2;
   std::vector<std::uint64_t> offsets, sizes;
+  std::uint64_t compression = 0;
   for (; entries > 0 && bytes.good(); --entries, place += 4 + 2 * word) {
     bytes.go_to(place);
     const std::uint64_t tag = take(2), type = take(2);
     const auto count = static_cast<std::int64_t>(take(word));
+    if (tag == kCompression && compression == 0) compression = take(2);
     const bool is_offset = tag == kStripOffsets || tag == kTileOffsets;
     std::vector<std::uint64_t>& numbers = is_offset ? offsets : sizes;
     if ((!is_offset && tag != kStripSizes && tag != kTileSizes) || !numbers.empty()) continue;
@@ -552,6 +561,11 @@ bool tiff_is_whole(Bytes& bytes, bool big_endian) {
   for (std::size_t i = 0; i < std::min(offsets.size(), sizes.size()); ++i) {
     const auto whole = static_cast<std::uint64_t>(bytes.size());
     if (offsets[i] > whole || sizes[i] > whole - offsets[i]) return false;
+    // Zeros are read as if all were well; the code or sum that ends such a strip or tile is none.
+    const bool has_end = compression == kLzw || compression == kDeflate || compression == kOldDeflate;
+    if (!has_end || sizes[i] < 4) continue;
+    bytes.go_to(static_cast<std::int64_t>(offsets[i] + sizes[i] - 4));
+    if (take(4) == 0) return false;
   }
   return bytes.good();
 }

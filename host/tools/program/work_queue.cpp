@@ -2,10 +2,12 @@
 #include "tools/program/work_queue.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <exception>
 #include <new>
 #include <string>
+#include <system_error>
 #include <utility>
 
 namespace quincunx::tools {
@@ -20,9 +22,36 @@ Status run_job(const std::function<Status()>& job) {
   }
 }
 
+void add_threads(std::vector<std::thread>& threads, int count, const std::function<void()>& work) {
+  threads.reserve(static_cast<std::size_t>(std::max(count, 0)));
+  for (int i = 0; i < count; ++i) {
+    try {
+      threads.emplace_back(work);
+    } catch (const std::system_error&) {
+      if (threads.empty()) throw;
+      return;
+    }
+  }
+}
+
+void for_each_index(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next = 0;
+  const auto run = [&] {
+    for (std::size_t i; (i = next.fetch_add(1)) < count;)
+      work(i);
+  };
+  std::vector<std::thread> helpers;
+  try {
+    add_threads(helpers, threads - 1, run);
+  } catch (const std::system_error&) {  // then the caller's thread does it alone
+  }
+  run();
+  for (std::thread& helper : helpers)
+    helper.join();
+}
+
 WorkQueue::WorkQueue(int threads, int depth) : depth_(static_cast<std::size_t>(std::max(depth, 1))) {
-  for (int i = 0; i < std::max(threads, 1); ++i)
-    threads_.emplace_back([this] { run(); });
+  add_threads(threads_, std::max(threads, 1), [this] { run(); });
 }
 
 WorkQueue::~WorkQueue() {

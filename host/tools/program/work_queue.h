@@ -21,6 +21,13 @@ namespace quincunx::tools {
 // Runs a job of another thread, from which no exception may come: it becomes an error.
 Status run_job(const std::function<Status()>& job);
 
+// Adds up to `count` threads that run `work`, fewer where the system has no room for more. Throws std::system_error
+// where it has none for one.
+void add_threads(std::vector<std::thread>& threads, int count, const std::function<void()>& work);
+
+// Calls work(i), which may not throw, for every index below `count`, from so many threads, the caller's among them.
+void for_each_index(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
+
 // Jobs start in the order in which they came; with one thread each also ends before the next starts. The pixels that a
 // job holds and writes live in memory from push() to its end, so `depth` bounds that memory.
 class WorkQueue {
@@ -61,8 +68,7 @@ class ReadAhead {
   // Calls read(index, item) for every index in [0, count), from `threads` threads.
   ReadAhead(std::size_t count, int threads, int depth, std::function<Status(std::size_t, Item&)> read)
       : count_(count), read_(std::move(read)), slots_(static_cast<std::size_t>(depth)) {
-    for (int i = 0; i < threads; ++i)
-      threads_.emplace_back([this] { run(); });
+    add_threads(threads_, threads, [this] { run(); });
   }
 
   ~ReadAhead() {

@@ -114,6 +114,53 @@ std::string on_attributes(const ResolveTask& task) {
       fmt::join(task.format.ignored, "' and '"));
 }
 
+// A history that does not reach back to the sequence's first frame, or to a cut, is another one.
+std::string on_history(const ResolveTask& task) {
+  const auto there = task.input.frames_on_disk();
+  if (!task.plan.accumulates() || !there.ok() || there->empty()) return {};
+  std::int64_t begin = there->front(), last = begin - 1;
+  for (const ScannedFrame& frame : task.scan.frames) {
+    if (last + 1 != frame.number)
+      begin = frame.number;
+    else if (frame.opens)
+      begin = there->front();
+    last = frame.number;
+    if (!frame.wanted || begin <= there->front()) continue;
+    const std::int64_t before = frame.number - there->front();
+    return fmt::format(
+        "frame {} has a history of {} frames, and in a run in one go of {}: its pixels and those of frames "
+        "after it are "
+        "as good, but not the same; --warm-up {} makes them so",
+        frame.number, frame.number - begin, before, before);
+  }
+  return {};
+}
+
+// Returns the first part of a list ("a, b; c") that another one has not.
+std::string difference(const std::string& text, const std::string& other) {
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i <= text.size(); ++i) {
+    const bool ends = i == text.size() || (text[i] == ' ' && (text[i - 1] == ',' || text[i - 1] == ';'));
+    if (!ends) continue;
+    const std::string part = text.substr(begin, (i == text.size() ? i : i - 1) - begin);
+    if (other.find(part) == std::string::npos) return part;
+    begin = i + 1;
+  }
+  return "nothing";
+}
+
+// A chunk of a farm whose frames are read otherwise than those of another one makes a seam.
+std::string on_neighbours(const ResolveTask& task) {
+  if (!task.output || task.asked.empty()) return {};
+  for (const std::int64_t frame : {task.asked.front() - 1, task.asked.back() + 1}) {
+    const std::string there = task.output->settings_in(frame), &here = task.output->settings;
+    if (there.empty() || there == here) continue;
+    return fmt::format("'{}', beside the frames of this run, was made otherwise: '{}' there, '{}' here",
+                       task.output->path(frame), difference(there, here), difference(here, there));
+  }
+  return {};
+}
+
 // Whoever names its files one by one reads them as any renderer's.
 std::string on_recording(const ResolveTask& task) {
   const std::string folder = std::filesystem::path(task.input.text()).parent_path().string();
@@ -190,8 +237,9 @@ std::vector<std::string> advice_on(const ResolveTask& task) {
   std::erase_if(frames, [](const ScannedFrame& frame) { return !frame.problem.empty(); });
   if (frames.empty()) return {};
   std::vector<std::string> advice = {
-      on_motion(task),       on_jitter(task, frames), on_compression(task, frames), on_shape(task, frames),
-      on_size(task, frames), on_recording(task),      on_attributes(task)};
+      on_motion(task),        on_jitter(task, frames), on_compression(task, frames),
+      on_shape(task, frames), on_size(task, frames),   on_history(task),
+      on_neighbours(task),    on_recording(task),      on_attributes(task)};
   std::erase(advice, "");
   return advice;
 }

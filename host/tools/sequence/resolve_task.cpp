@@ -2,12 +2,14 @@
 #include "tools/sequence/resolve_task.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <limits>
 
 #include "tools/program/resolve_settings_options.h"
+#include "tools/program/work_queue.h"
 #include "tools/sequence/resolve_advice.h"
 #include "tools/sequence/sequence_noise.h"
 
@@ -79,10 +81,16 @@ Result<SequenceFormat> settle_by_first(const ResolveOptions& options, const Reso
 // Frames of more samples a pixel are clean to --noise auto.
 constexpr float kNoisySamplesMax = 64;
 
-float noise_by_frames(const ResolveTask& task) {
+// Of a chunk the neighbours must come to the same, whenever they are begun.
+Result<float> noise_by_frames(const ResolveOptions& options, const ResolveTask& task) {
   const float samples = task.format.samples;
   if (samples >= 1) return samples <= kNoisySamplesMax ? 1 / samples : 0;
-  return noise_of(task.input, task.format);
+  const auto noise = noise_of(task.input, task.format);
+  if (noise || !options.frames) return noise.value_or(0);
+  return Status::io(
+      "--noise auto with --frames needs the first 33 files of the sequence, whole, without gap and of one "
+      "size, for "
+      "all chunks to agree; begin when they are there, or say --noise SPP");
 }
 
 void settle_method(const ResolveOptions& options, ResolveTask& task) {
@@ -124,15 +132,13 @@ Result<std::optional<SequenceOutput>> output_for(const ResolveOptions& options, 
 // Sorts what is there already out of `asked`; what is left is returned.
 std::vector<std::int64_t> left_to_do(const ResolveOptions& options, ResolveTask& task) {
   if (!options.resume) return task.asked;
+  std::vector<Made> made(task.asked.size());
+  for_each_index(made.size(), options.threads,
+                 [&](std::size_t i) { made[i] = task.output->made(task.asked[i]); });
   std::vector<std::int64_t> left;
-  for (const std::int64_t number : task.asked) {
-    const Made made = task.output->made(number);
-    if (made == Made::kAsWanted) {
-      task.there.push_back(number);
-      continue;
-    }
-    left.push_back(number);
-    if (made == Made::kOtherwise) task.stale.push_back(number);
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    (made[i] == Made::kAsWanted ? task.there : left).push_back(task.asked[i]);
+    if (made[i] == Made::kOtherwise) task.stale.push_back(task.asked[i]);
   }
   return left;
 }
@@ -182,7 +188,11 @@ Status settle_sequence(const ResolveOptions& options, ResolveTask& task) {
   if (!format.ok()) return format.status();
   task.format = std::move(format).value();
   settle_method(options, task);
-  if (options.noise_by_frames && !options.diagnose) task.resolve.temporal.noise = noise_by_frames(task);
+  if (options.noise_by_frames && !options.diagnose) {
+    const auto noise = noise_by_frames(options, task);
+    if (!noise.ok()) return noise.status();
+    task.resolve.temporal.noise = noise.value();
+  }
   auto output = output_for(options, task);
   if (!output.ok()) return output.status();
   task.output = std::move(output).value();
@@ -286,6 +296,12 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
                       frame.number, frame.render.width, frame.render.height, task.format.output.width,
                       task.format.output.height));
     }
+    spdlog::warn(
+        "frame {} has {}x{} pixels for {}x{} and so no history: this run goes one way; a chunk without such "
+        "a "
+        "frame would not, so say --two-way 0 to all",
+        frame.number, frame.render.width, frame.render.height, task.format.output.width,
+        task.format.output.height);
     task.format.two_way = 0;
   }
   if (const Extent target = task.scan.target(); target != Extent{} && !recorded) {

@@ -66,7 +66,7 @@ struct ResolveTask {
   SequenceFormat format = {};
   std::vector<std::int64_t> asked = {};  // for
   std::vector<std::int64_t> there = {};  // frames of `asked` that are there, by --resume
-  std::vector<std::int64_t> stale = {};  // by --resume, too: there, but made otherwise; made again
+  std::vector<std::int64_t> stale = {};  // by --resume, too: there, but broken or made otherwise; made again
   SequenceScan scan = {};                // scan of the rest and their history
   ResolveSettings resolve = {};          // as asked for, with the method settled
   std::string method_reason = {};        // why this one; empty: it was asked for

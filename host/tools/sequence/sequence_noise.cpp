@@ -162,19 +162,22 @@ float noise_between(std::span<const LitFrame> frames) {
   return static_cast<float>(std::min(parts[parts.size() * 4 / 5], 1.0));
 }
 
-float noise_of(const FramePattern& pattern, const SequenceFormat& format) {
+std::optional<float> noise_of(const FramePattern& pattern, const SequenceFormat& format) {
+  if (format.motion != MotionSource::kChannels) return 0;
   auto numbers = pattern.frames_on_disk();
-  if (format.motion != MotionSource::kChannels || !numbers.ok()) return 0;
-  numbers->resize(std::min<std::size_t>(numbers->size(), kFramesRead));
+  if (!numbers.ok() || numbers->size() < kFramesRead) return std::nullopt;
+  numbers->resize(kFramesRead);
+  if (numbers->back() - numbers->front() >= kFramesRead) return std::nullopt;
   const SequenceScan scan = scan_sequence(pattern, format, numbers.value(), numbers.value(), 1);
   std::vector<LitFrame> frames;
   SequenceFrame read;
   for (const ScannedFrame& scanned : scan.frames) {
-    if (!scanned.problem.empty() || (!frames.empty() && scanned.render != scan.frames.front().render)) break;
-    if (!read_frame(pattern.expand(scanned.number), format, scanned, PixelFormat::kRGBA32F, read).ok()) break;
+    if (!scanned.problem.empty() || scanned.render != scan.frames.front().render) return std::nullopt;
+    if (!read_frame(pattern.expand(scanned.number), format, scanned, PixelFormat::kRGBA32F, read).ok())
+      return std::nullopt;
     frames.push_back(middle_of(read, scanned));
   }
-  return frames.size() < kFramesRead ? 0 : noise_between(frames);
+  return noise_between(frames);
 }
 
 }  // namespace quincunx::tools

@@ -2,6 +2,7 @@
 // Sequence noise: how much of a sample's light is chance, told by the frames themselves.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,8 +26,8 @@ struct LitFrame {
 // fifth with most noise exceeds. Pure.
 float noise_between(std::span<const LitFrame> frames);
 
-// Reads the first 33 frames of the sequence that lie on disk, whatever is asked for, so that chunks agree. 0 also where
-// they are fewer, or have no motion.
-float noise_of(const FramePattern& pattern, const SequenceFormat& format);
+// Reads the first 33 frames of the sequence that lie on disk, whatever is asked for, so that chunks agree. 0 where they
+// have no motion; nothing where they are fewer, with a gap, broken or of several sizes.
+std::optional<float> noise_of(const FramePattern& pattern, const SequenceFormat& format);
 
 }  // namespace quincunx::tools

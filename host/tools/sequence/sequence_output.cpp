@@ -94,14 +94,18 @@ Made SequenceOutput::made(std::int64_t frame) const {
   const std::string file = path(frame);
   if (!std::filesystem::exists(file, error)) return Made::kNot;
   if (!check_whole(file).ok()) return Made::kOtherwise;
+  const auto image = read_image(file);  // of a copy that was broken off blocks may be there, and hold zeros
+  if (!image.ok() || image->extent != extent) return Made::kOtherwise;
   if (format_of(pattern) != FileFormat::kExr) return Made::kAsWanted;
-  const auto reader = ImageReader::open(file);
-  if (!reader.ok()) return Made::kOtherwise;
-  const ImageHeader& header = reader->header();
-  const Attribute* made_with = header.attribute(kSettingsAttribute);
+  return settings_in(frame) == settings ? Made::kAsWanted : Made::kOtherwise;
+}
+
+std::string SequenceOutput::settings_in(std::int64_t frame) const {
+  const auto reader = ImageReader::open(path(frame));
+  if (!reader.ok()) return {};
+  const Attribute* made_with = reader->header().attribute(kSettingsAttribute);
   const auto* text = made_with != nullptr ? std::get_if<std::string>(&made_with->value) : nullptr;
-  const bool same = header.parts[0].data.extent == extent && text != nullptr && *text == settings;
-  return same ? Made::kAsWanted : Made::kOtherwise;
+  return text != nullptr ? *text : "";
 }
 
 Status SequenceOutput::write_linear(std::int64_t frame, std::span<const float> rgba, float exposure,

@@ -17,7 +17,7 @@
 
 namespace quincunx::tools {
 
-enum class Made : std::uint8_t { kNot, kOtherwise, kAsWanted };
+enum class Made : std::uint8_t { kNot, kOtherwise, kAsWanted };  // kOtherwise: or in part
 
 // A value; its functions are thread-safe for different frames.
 struct SequenceOutput {
@@ -29,9 +29,12 @@ struct SequenceOutput {
 
   std::string path(std::int64_t frame) const { return pattern.expand(frame); }
 
-  // Returns whether the frame's file is there as this run would make it: an EXR of this extent, made with these
-  // settings; another file, if it is there and not cut short.
+  // Returns whether the frame's file is there as this run would make it: whole to its last pixel, of this extent, and,
+  // as an EXR tells, made with these settings.
   Made made(std::int64_t frame) const;
+
+  // Returns what the frame's file says of its settings; empty where there is no such file, or it says nothing.
+  std::string settings_in(std::int64_t frame) const;
 
   // Whether the picture as presented is written, in 8 bits. Else light is, or what is made from it.
   bool presents() const { return has_8_bits(format_of(pattern)); }

@@ -4,16 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <iterator>
 #include <optional>
 #include <set>
-#include <thread>
 
 #include "tools/image/display_light.h"
 #include "tools/image/image_reader.h"
 #include "tools/program/frame_pattern.h"
+#include "tools/program/work_queue.h"
 
 namespace quincunx::tools {
 namespace {
@@ -256,24 +255,14 @@ SequenceScan scan_sequence(const FramePattern& pattern, const SequenceFormat& fo
   for (const std::int64_t number : read)
     scan.frames.push_back(
         {.number = number, .wanted = std::binary_search(wanted.begin(), wanted.end(), number)});
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i; (i = next.fetch_add(1)) < scan.frames.size();) {
-      ScannedFrame& frame = scan.frames[i];
-      const std::string path = pattern.expand(frame.number);
-      if (!exists(path)) {
-        frame.problem = missing_text(frame, path);
-      } else if (Status status = scan_frame(path, format, frame); !status.ok()) {
-        frame.problem = status.message();
-      }
-    }
+  const auto look_at = [&](std::size_t i) -> Status {
+    const std::string path = pattern.expand(scan.frames[i].number);
+    return exists(path) ? scan_frame(path, format, scan.frames[i])
+                        : Status::io(missing_text(scan.frames[i], path));
   };
-  std::vector<std::thread> helpers;
-  for (int i = 1; i < threads; ++i)
-    helpers.emplace_back(work);
-  work();
-  for (std::thread& helper : helpers)
-    helper.join();
+  for_each_index(scan.frames.size(), threads, [&](std::size_t i) {
+    scan.frames[i].problem = run_job([&] { return look_at(i); }).message();
+  });
   for (std::size_t i = 0; i < scan.frames.size(); ++i) {
     ScannedFrame& frame = scan.frames[i];
     const ScannedFrame* before = i > 0 ? &scan.frames[i - 1] : nullptr;
