@@ -246,6 +246,20 @@ TEST_F(Refusal, BadFramesMayBeSkipped) {
     EXPECT_FALSE(std::filesystem::exists(output(number))) << number;
 }
 
+#ifndef __SANITIZE_ADDRESS__  // which takes more addresses than any limit leaves
+// Whatever gives up first: the driver's own start, its memory for pictures, or ours.
+TEST_F(Refusal, TooLittleMemory) {
+  write_frames(1, 1);
+  for (const int megabytes : {700, 1200, 2000}) {
+    const std::string program = fmt::format("ulimit -v {}; {}", megabytes * 1000, QUINCUNX_PROGRAM);
+    const auto result = run_program(folder_, kRun + "--output 15360x8640 -q", program.c_str());
+    EXPECT_EQ(result.exit_code, 1) << megabytes;
+    EXPECT_EQ(result.err.rfind("error: ", 0), 0u) << megabytes << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  }
+}
+#endif
+
 TEST_F(Refusal, FoldersThatCannotBeWritten) {
   write_frames(1, 2);
   expect_refused("'{}/f.%04d.exr' --out /proc/none/u.%04d.exr", 1, "/proc/none");

@@ -2,11 +2,14 @@
 #include "quincunx/device.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <fstream>
 #include <optional>
 
 #include "device/device_impl.h"
@@ -125,8 +128,24 @@ void add_devices(const cl::Platform& platform, std::vector<FoundDevice>& found) 
   }
 }
 
+// PoCL and its compiler take up to 650 MB of addresses before the first picture, and abort or wait for ever where they
+// get fewer.
+Status check_room() {
+  constexpr rlim_t kDriverBytes = 700'000'000;
+  struct rlimit limit = {};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return {};
+  rlim_t taken = 0;
+  std::ifstream("/proc/self/statm") >> taken;  // pages
+  taken *= static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+  if (limit.rlim_cur >= taken + kDriverBytes) return {};
+  return Status::device(fmt::format(
+      "there is too little memory for an OpenCL driver: ulimit -v is {}; it has to be {} at least",
+      limit.rlim_cur / 1024, (taken + kDriverBytes) / 1024 + 1));
+}
+
 // Returns all devices that answer, with their places in the list.
 std::vector<FoundDevice> all_devices() {
+  if (!check_room().ok()) return {};
   std::vector<cl::Platform> platforms;
   try {
     cl::Platform::get(&platforms);
@@ -154,6 +173,7 @@ std::string searched_name(const DeviceInfo& info) {
 }
 
 Status no_match(const std::string& selector, const std::vector<DeviceInfo>& infos) {
+  if (Status status = check_room(); !status.ok()) return status;
   if (infos.empty()) {
     return Status::unsupported(
         "no OpenCL device found; install a driver, for example the Debian package pocl-opencl-icd for the "
@@ -392,7 +412,7 @@ Result<Image> Device::allocate(Extent extent, PixelFormat format, Storage storag
         return Status::unsupported(
             fmt::format("'{}' has no {} images; use buffer storage", impl_->info.name, name_of(format)));
       }
-      cl::Image2D image(impl_->context, CL_MEM_READ_WRITE, channels, extent.width, extent.height);
+      cl::Image2D image(impl_->context, impl_->picture_flags(), channels, extent.width, extent.height);
       view.memory = image();
       return Image::borrow(view);
     }
@@ -403,7 +423,7 @@ Result<Image> Device::allocate(Extent extent, PixelFormat format, Storage storag
                       "least {}",
                       view.pitch, extent.width, name_of(format), texel, extent.width * texel));
     }
-    cl::Buffer buffer(impl_->context, CL_MEM_READ_WRITE, view.pitch * extent.height);
+    cl::Buffer buffer(impl_->context, impl_->picture_flags(), view.pitch * extent.height);
     view.memory = buffer();
     return Image::borrow(view);
   } catch (...) {

@@ -34,6 +34,12 @@ struct Device::Impl {
   // The driver itself keeps what it compiles from one run to the next, so the program cache leaves kernels to it.
   bool keeps_programs = false;
   std::shared_ptr<BuiltPrograms> built = std::make_shared<BuiltPrograms>();
+
+  // Flags of memory for pictures. PoCL takes it from the host when a kernel first wants it, and ends the process where
+  // there is none; so asked, it takes it at once, and says so.
+  cl_mem_flags picture_flags() const {
+    return CL_MEM_READ_WRITE | (info.kind == DeviceKind::kCpu ? cl_mem_flags{CL_MEM_ALLOC_HOST_PTR} : 0);
+  }
 };
 
 // Returns the position of the device that a selector of Device::open() names. A number is an index where there is such

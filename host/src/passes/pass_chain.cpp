@@ -122,7 +122,7 @@ void PassChain::allocate(const ResourceUse& use) {
       continue;
     }
     const std::size_t bytes = static_cast<std::size_t>(extent.area()) * use.largest.record_bytes;
-    const cl::Buffer records(device_.impl()->context, CL_MEM_READ_WRITE, bytes);
+    const cl::Buffer records(device_.impl()->context, device_.impl()->picture_flags(), bytes);
     fill_zero(device_.impl()->queue, records(), bytes);
     owned.images[i] = Image::borrow({.memory = records(), .extent = extent});
   }

@@ -12,12 +12,14 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <exception>
 #include <memory>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -53,6 +55,25 @@ class PrintableFlag : public spdlog::custom_flag_formatter {
     return std::make_unique<PrintableFlag>();
   }
 };
+
+constexpr char kNoMemory[] =
+    "there is too little memory, or there are too many threads; allow more (ulimit -v, -u), or ask for "
+    "smaller pictures";
+
+int no_memory() {
+  std::fprintf(stderr, "error: %s\n", kNoMemory);
+  return kFailed;
+}
+
+// Drivers, and the compiler within them, abort where they have no memory.
+void end_in_a_sentence(int) {
+  constexpr char kBegin[] = "error: a library gave up, most likely as ";
+  for (const std::string_view text :
+       {std::string_view(kBegin), std::string_view(kNoMemory), std::string_view("\n")}) {
+    if (::write(STDERR_FILENO, text.data(), text.size()) < 0) break;
+  }
+  ::_exit(kFailed);
+}
 
 constexpr int kBarWidth = 24;
 constexpr double kEstimateAfterSeconds = 1.0;
@@ -112,6 +133,8 @@ int fail(const Status& status) {
 }
 
 int run_program(const char* program, int (*run)(int argc, char** argv), int argc, char** argv) {
+  std::set_terminate([] { std::abort(); });  // without a text of its own
+  std::signal(SIGABRT, end_in_a_sentence);
   try {
     const int code = run(argc, argv);
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
@@ -119,9 +142,12 @@ int run_program(const char* program, int (*run)(int argc, char** argv), int argc
     return code == kDone ? kFailed : code;
   } catch (const std::system_error& error) {
     const bool output = std::ferror(stdout) != 0;  // fmt throws where it cannot print
+    if (!output && error.code() == std::errc::resource_unavailable_try_again) return no_memory();
     std::fprintf(stderr, "error: %s%s\n", output ? "standard output cannot be written: " : "internal error: ",
                  output ? error.code().message().c_str() : error.what());
     return kFailed;
+  } catch (const std::bad_alloc&) {
+    return no_memory();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: internal error: %s\n", program, error.what());
     return kFailed;
