@@ -2,6 +2,7 @@
 // The table of options of quincunx-bench.
 #include "bench/bench_options.h"
 #include "option_pairs.h"
+#include "page_commands.h"
 
 namespace quincunx {
 namespace {
@@ -10,6 +11,10 @@ using BenchPairs = testing::OptionPairs<bench::BenchOptions>;
 
 TEST(Options, EachPairOfBenchIsJudged) {
   BenchPairs({}).expect_each_is_judged();
+}
+
+TEST(Options, ThosePagesShowOfBenchAreAccepted) {
+  testing::expect_pages_accepted<bench::BenchOptions>("quincunx-bench");
 }
 
 TEST(Options, HelpOfBenchIsReadable) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The tables of options of quincunx-render, -dump and -resolve.
 #include "option_pairs.h"
+#include "page_commands.h"
 #include "programs/dump_session.h"
 #include "session/render_options.h"
 #include "tools/sequence/resolve_task.h"
@@ -27,6 +28,12 @@ TEST(Options, HelpIsReadable) {
   RenderPairs::expect_readable_help();
   DumpPairs::expect_readable_help();
   ResolvePairs::expect_readable_help();
+}
+
+TEST(Options, ThosePagesShowAreAccepted) {
+  testing::expect_pages_accepted<scenes::RenderOptions>("quincunx-render");
+  testing::expect_pages_accepted<scenes::DumpOptions>("quincunx-dump");
+  testing::expect_pages_accepted<tools::ResolveOptions>("quincunx-resolve");
 }
 
 }  // namespace
