@@ -57,11 +57,11 @@ TEST(FileFuzz, Pictures) {
   for (int i = 0; i < 24 * 20 * 4; ++i)
     rgba.push_back(static_cast<float>(i * 7919 % 251) / 251);
   Random random(21);
-  for (const tools::Ending& ending : tools::backend::written_endings()) {
+  for (const tools::backend::Ending& ending : tools::backend::written_endings()) {
     const std::string path = folder.file("a" + std::string(ending.text));
-    ASSERT_TRUE(tools::write_light(path, {24, 20}, rgba, ChannelType::kHalf, {}, {}).ok());
+    ASSERT_TRUE(tools::write_light(path, {24, 20}, rgba, tools::ChannelType::kHalf, {}, {}).ok());
     const std::string good = read_file(path);
-    for (int round = 0; round < rounds() / 6; ++round) {
+    for (int round = 0; round < rounds() / 100; ++round) {
       SCOPED_TRACE(round);
       write(path, damaged(good, random));
       expect_sentence(tools::check_whole(path));
@@ -75,7 +75,8 @@ TEST(FileFuzz, Pictures) {
 
 TEST(FileFuzz, RecordedSettings) {
   const TemporaryFolder folder;
-  const std::string path = folder.file(tools::kSettingsFile), good = tools::to_json({});
+  const std::string path = folder.file(tools::kSettingsFile),
+                    good = tools::to_json(tools::RecordedSettings{});
   Random random(22);
   int taken = 0;
   for (int round = 0; round < rounds(); ++round) {

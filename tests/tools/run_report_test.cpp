@@ -133,6 +133,9 @@ TEST(PassStatistics, ALongRunKeepsAsManySamplesAsAMedianNeeds) {
   EXPECT_NEAR(kept.p95_ms, 95'000, 16);
   EXPECT_NEAR(static_cast<double>(kept.bytes), 50'000, 16);
   EXPECT_EQ(samples.total_ms(), 100'000. * 100'001 / 2);
+  Samples without_bytes;
+  without_bytes.add(1);
+  EXPECT_EQ(without_bytes.statistics("a", "clock").bytes, -1);
 }
 
 TEST(RunReport, JsonHoldsEveryFrame) {

@@ -405,7 +405,9 @@ void Samples::add(double ms, std::uint64_t bytes) {
 }
 
 PassStatistics Samples::statistics(std::string name, std::string clock) const {
-  return statistics_of(std::move(name), std::move(clock), ms_, bytes_);
+  std::span<const std::uint64_t> bytes = bytes_;
+  if (std::none_of(bytes.begin(), bytes.end(), [](std::uint64_t count) { return count > 0; })) bytes = {};
+  return statistics_of(std::move(name), std::move(clock), ms_, bytes);
 }
 
 void MeasuredFrames::add(const FrameReport& report) {

@@ -130,7 +130,7 @@ std::string to_json(const RunReport& report);
 // fourth and so on: as many as a median needs, in memory that does not grow.
 class Samples {
  public:
-  void add(double ms, std::uint64_t bytes = 0);
+  void add(double ms, std::uint64_t bytes = 0);  // 0: not known
   double total_ms() const { return total_ms_; }  // of all
   // As statistics_of(), of those that are kept.
   PassStatistics statistics(std::string name, std::string clock) const;

@@ -128,9 +128,9 @@ std::string on_history(const ResolveTask& task) {
     if (!frame.wanted || begin <= there->front()) continue;
     const std::int64_t before = frame.number - there->front();
     return fmt::format(
-        "frame {} has a history of {} frames, and in a run in one go of {}: its pixels and those of frames "
-        "after it are "
-        "as good, but not the same; --warm-up {} makes them so",
+        "frame {} has a history of {} frames, and in a run in one go of {}: its pixels, and later ones, "
+        "differ a "
+        "little; --warm-up {} makes them the same",
         frame.number, frame.number - begin, before, before);
   }
   return {};
