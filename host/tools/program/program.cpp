@@ -6,6 +6,7 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -133,8 +134,12 @@ int fail(const Status& status) {
 }
 
 int run_program(const char* program, int (*run)(int argc, char** argv), int argc, char** argv) {
-  std::set_terminate([] { std::abort(); });  // without a text of its own
-  std::signal(SIGABRT, end_in_a_sentence);
+  // Where memory has no limit, an abort is a fault, and a debugger's.
+  struct rlimit addresses = {};
+  if (::getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur != RLIM_INFINITY) {
+    std::set_terminate([] { std::abort(); });  // without a text of its own
+    std::signal(SIGABRT, end_in_a_sentence);
+  }
   try {
     const int code = run(argc, argv);
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
