@@ -3,6 +3,8 @@
 #include <CL/cl.h>
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <optional>
 
 #include "cl_interposer.h"
@@ -138,15 +140,18 @@ TEST_F(PlacedTargetsTest, ImagesArePackedInOneAllocation) {
   for (std::uint32_t frame = 0; frame < 12; ++frame) {
     const Extent render = random_extent(state, kLargest);
     SharedFrame shared = run_frame(bridge, frame, render);
-    std::size_t end = 0;
+    std::map<std::size_t, std::size_t> ends;  // of regions, by their offsets
     for (const Plane& plane : planes_) {
       const ImageView& view = view_of(shared, plane.kind);
       EXPECT_EQ(view.pitch, static_cast<std::size_t>(render.width) * bytes_per_pixel(plane.format));
       EXPECT_EQ(view.offset % 16, 0u);
-      EXPECT_GE(view.offset, end);
-      end = view.offset + static_cast<std::size_t>(kLargest.area()) * bytes_per_pixel(plane.format);
+      ends[view.offset] =
+          view.offset + static_cast<std::size_t>(kLargest.area()) * bytes_per_pixel(plane.format);
       EXPECT_EQ(view.memory, shared.colour.memory);
     }
+    ASSERT_EQ(ends.size(), planes_.size());
+    for (auto region = ends.begin(), next = std::next(region); next != ends.end(); region = next++)
+      EXPECT_GE(next->first, region->second);
     cl_mem parent = nullptr;
     ASSERT_EQ(clGetMemObjectInfo(shared.colour.memory, CL_MEM_ASSOCIATED_MEMOBJECT, sizeof(parent), &parent,
                                  nullptr),
