@@ -26,6 +26,8 @@ inline std::vector<std::string> command_lines(const std::string& program, const 
   }
   code = std::regex_replace(code, std::regex("\\\\\n"), " ");
   code = std::regex_replace(code, std::regex("#FRAMESPEC#"), "1-2");  // as OpenCue does
+  code = std::regex_replace(code, std::regex("\\$\\(\\([^)]*\\)\\)"),
+                            "100");  // sums, in which wordexp() knows no names
   // The name after a folder or settings; a comment may follow, and a report of a run begins with a version.
   const std::regex command("(?:^|\n)(?:exec |[A-Z_]+=\\S+ |chrt \\S+ \\S+ |\\S+/)*" + program +
                            "( (?!\\d)[^\n]*?)(?=\\s+# |\\s*\n)");
