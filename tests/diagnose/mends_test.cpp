@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Conventions of other programs: the doctor names each, and what it says to mend it does.
 #include <functional>
-#include <sstream>
 
 #include "diagnose_stage.h"
+#include "parsed_options.h"
 #include "tools/sequence/resolve_task.h"
 
 namespace quincunx {
@@ -32,15 +32,7 @@ Change depth(const std::function<float(float)>& change) {
 
 // What frames and the doctor's input are under options of the command line, as a run takes them.
 void apply(const std::string& words, Frames& frames, tools::DiagnosedInput& input) {
-  std::vector<std::string> given = {"quincunx-resolve", "f.%04d.exr", "-n"};
-  std::istringstream stream(words);
-  for (std::string word; stream >> word;)
-    given.push_back(word);
-  std::vector<char*> argv;
-  for (std::string& word : given)
-    argv.push_back(word.data());
-  tools::ResolveOptions options;
-  ASSERT_FALSE(tools::parse_command_line(static_cast<int>(argv.size()), argv.data(), options)) << words;
+  const tools::ResolveOptions options = testing::parsed_options(words);
   const tools::SequenceInput& said = options.sequence;
   input.units = said.units.value_or(input.units);
   input.velocity_offset = said.velocity_offset;

@@ -8,8 +8,8 @@
 
 #include <cmath>
 #include <functional>
-#include <sstream>
 
+#include "parsed_options.h"
 #include "sequence_fixture.h"
 #include "tools/program/jitter.h"
 #include "tools/sequence/resolve_task.h"
@@ -54,15 +54,7 @@ class Conventions : public testing::SequenceTest {
 
   // Frame 1 under these options.
   SequenceFrame read(const std::string& words = "") {
-    std::vector<std::string> given = {"quincunx-resolve", "f.%04d.exr", "-n"};
-    std::istringstream stream("--output 34x20 " + words);
-    for (std::string word; stream >> word;)
-      given.push_back(word);
-    std::vector<char*> argv;
-    for (std::string& word : given)
-      argv.push_back(word.data());
-    tools::ResolveOptions options;
-    EXPECT_FALSE(tools::parse_command_line(static_cast<int>(argv.size()), argv.data(), options)) << words;
+    tools::ResolveOptions options = testing::parsed_options("--output 34x20 " + words);
     options.sequence.jitter = tools::JitterSource::parse(options.jitter).value();
     const auto reader = tools::ImageReader::open(input(1));
     EXPECT_TRUE(reader.ok());

@@ -37,7 +37,7 @@ struct FrameAttributes {
   std::optional<Vec2> place = {};  // of a focus
   std::optional<std::string> rectangles = {};
   std::optional<float> feather = {};
-  // Of jitter and reset without prefix, those that cannot be meant: another program's.
+  // Names without prefix whose values cannot be meant, as another program wrote them: jitter, reset.
   std::vector<std::string> foreign = {};
 
   friend bool operator==(const FrameAttributes&, const FrameAttributes&) = default;

@@ -171,11 +171,7 @@ double dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-bool is_orthographic(const Matrix& m) {
-  return m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] != 0;
-}
-
-// Of orthographic cameras: points move alike at every distance, unless the axis turns.
+// Returns the motion of an orthographic camera: alike at every distance, unless the axis turns.
 std::optional<CameraMotion> orthographic_motion(const Matrix& now, const Matrix& before) {
   constexpr double kStraight = 1e-5;
   const auto row = [](const Matrix& m, std::size_t r) {
@@ -202,6 +198,10 @@ std::optional<CameraMotion> orthographic_motion(const Matrix& now, const Matrix&
 }
 
 }  // namespace
+
+bool is_orthographic(const Matrix& m) {
+  return m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] != 0;
+}
 
 Matrix transposed(Matrix matrix) {
   for (std::size_t row = 0; row < 4; ++row)

@@ -90,6 +90,7 @@ void scale_depth(Vec2 range, DepthKind kind, std::span<float> depth);
 float nothing_seen(DepthKind kind);
 
 Matrix transposed(Matrix matrix);
+bool is_orthographic(const Matrix& matrix);  // for row vectors
 
 // Whether a matrix for row vectors is that of a camera with a lens: strictly, or so that it may be one.
 struct CameraForm {

@@ -129,8 +129,7 @@ std::string on_history(const ResolveTask& task) {
     const std::int64_t before = frame.number - there->front();
     return fmt::format(
         "frame {} has a history of {} frames, and in a run in one go of {}: its pixels, and later ones, "
-        "differ a "
-        "little; --warm-up {} makes them the same",
+        "differ a little; --warm-up {} makes them the same",
         frame.number, frame.number - begin, before, before);
   }
   return {};

@@ -98,23 +98,21 @@ std::string set_velocity(SequenceInput& input, const std::string& text) {
       .take(text);
 }
 
+std::string set_numbers(Vec2& numbers, const std::string& x, const std::string& y) {
+  const Bounds bounds = {.least = -1e9, .most = 1e9};
+  const std::string wrong = number(numbers.x, bounds).take(x);
+  return wrong.empty() ? number(numbers.y, bounds).take(y) : wrong;
+}
+
 // "X,Y", or one number for both.
 std::string set_velocity_offset(SequenceInput& input, const std::string& text) {
   const std::size_t comma = std::min(text.find(','), text.size());
   const std::string words[] = {text.substr(0, comma), text.substr(comma < text.size() ? comma + 1 : 0)};
-  for (const auto& [word, offset] :
-       {std::pair{&words[0], &input.velocity_offset.x}, {&words[1], &input.velocity_offset.y}}) {
-    const std::string wrong = number(*offset, {.least = -1e9, .most = 1e9}).take(*word);
-    if (!wrong.empty()) return wrong;
-  }
-  return {};
+  return set_numbers(input.velocity_offset, words[0], words[1]);
 }
 
 std::string set_depth_range(SequenceInput& input, const std::string& zero, const std::string& one) {
-  for (const auto& [text, end] : {std::pair{&zero, &input.depth_range.x}, {&one, &input.depth_range.y}}) {
-    const std::string wrong = number(*end, {.least = -1e9, .most = 1e9}).take(*text);
-    if (!wrong.empty()) return wrong;
-  }
+  if (const std::string wrong = set_numbers(input.depth_range, zero, one); !wrong.empty()) return wrong;
   return input.depth_range.x == input.depth_range.y
              ? "one distance for all leaves no depth; write --depth none"
              : "";
@@ -122,11 +120,9 @@ std::string set_depth_range(SequenceInput& input, const std::string& zero, const
 
 std::string set_velocity_scale(SequenceInput& input, const std::string& x, const std::string& y) {
   VelocityUnits units{VelocityConvention::kScale, {}};
-  for (const auto& [text, scale] : {std::pair{&x, &units.scale.x}, {&y, &units.scale.y}}) {
-    const std::string wrong = number(*scale, {.least = -1e9, .most = 1e9}).take(*text);
-    if (!wrong.empty()) return wrong;
-    if (*scale == 0) return "a scale of 0 leaves no motion; write --velocity none for that";
-  }
+  if (const std::string wrong = set_numbers(units.scale, x, y); !wrong.empty()) return wrong;
+  if (units.scale.x == 0 || units.scale.y == 0)
+    return "a scale of 0 leaves no motion; write --velocity none for that";
   input.units = units;
   return {};
 }
@@ -176,8 +172,7 @@ void add_channel_options(CommandLine& line, ResolveOptions& options) {
   line.group("Channels");
   line.add("--colour,--color", text(input.picture.layer, "LAYER"),
            "The picture: R, G, B, A of LAYER, PART or PART.LAYER (default: without layer, or what is called "
-           "beauty, "
-           "rgba, Combined or the like)")
+           "beauty, rgba, Combined or the like)")
       .common();
   line.add("--part", text(input.picture.part, "NAME|N"),
            "Part of the picture in files of several, from 0 on");

@@ -81,7 +81,7 @@ Result<SequenceFormat> settle_by_first(const ResolveOptions& options, const Reso
 // Frames of more samples a pixel are clean to --noise auto.
 constexpr float kNoisySamplesMax = 64;
 
-// Of a chunk the neighbours must come to the same, whenever they are begun.
+// A chunk's neighbours must come to the same, whenever they are begun.
 Result<float> noise_by_frames(const ResolveOptions& options, const ResolveTask& task) {
   const float samples = task.format.samples;
   if (samples >= 1) return samples <= kNoisySamplesMax ? 1 / samples : 0;
@@ -89,8 +89,7 @@ Result<float> noise_by_frames(const ResolveOptions& options, const ResolveTask& 
   if (noise || !options.frames) return noise.value_or(0);
   return Status::io(
       "--noise auto with --frames needs the first 33 files of the sequence, whole, without gap and of one "
-      "size, for "
-      "all chunks to agree; begin when they are there, or say --noise SPP");
+      "size, for all chunks to agree; begin when they are there, or say --noise SPP");
 }
 
 void settle_method(const ResolveOptions& options, ResolveTask& task) {

@@ -64,7 +64,7 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
   frame.dwa = places->dwa;
   frame.world_to_ndc = attributes->world_to_ndc;
   frame.output = attributes->output;
-  frame.pixel_aspect = reader->header().parts[(*places)[InputPlane::kColour][0]->part].pixel_aspect;
+  frame.pixel_aspect = reader->header().parts[part].pixel_aspect;
   frame.reset = attributes->reset.value_or(false) ||
                 std::binary_search(format.cuts.begin(), format.cuts.end(), frame.number);
   if (Status status = check_size(path, frame.render, attributes.value()); !status.ok()) return status;
@@ -106,9 +106,8 @@ bool all_good(const std::vector<ScannedFrame>& frames, Fact ScannedFrame::*fact)
 }
 
 std::string camera_problem(const std::string& path, const Matrix& matrix) {
-  const bool orthographic = matrix[3] == 0 && matrix[7] == 0 && matrix[11] == 0;
   return fmt::format("'{}' has an attribute 'worldToNDC' {}", path,
-                     orthographic
+                     is_orthographic(matrix)
                          ? "of an orthographic camera that turns, whose motion does not follow from depth; "
                            "render motion, and name it with --velocity"
                          : "that cannot be inverted");
