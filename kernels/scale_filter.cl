@@ -204,11 +204,10 @@ __kernel void scale_filter(const FilterParams filter, __global const FilterSpan*
   // On a CPU once more, on the slow path, which is rare. Elsewhere all of it: a run has no registers there.
   uint met_count = 0;
   for (int x = item.first; x < item.end; x += item.step) {
-    bool met = true;
-    float4 colour;
-    if (!ON_CPU)
-      colour = filter_pixel(false, params, source, spans[x], row, column_weights + x * TAPS_X, row_weights, &met);
-    if (met)
+    bool met;
+    float4 colour =
+        filter_pixel(kLanes > 1, params, source, spans[x], row, column_weights + x * TAPS_X, row_weights, &met);
+    if (kLanes == 1 && met)
       colour = filter_pixel(true, params, source, spans[x], row, column_weights + x * TAPS_X, row_weights, &met);
     store_output(output, params->output, x, y, colour);
     met_count += met;

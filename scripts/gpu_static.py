@@ -60,7 +60,7 @@ class Compiler:
                  "-mllvm", "-inline-threshold=1000000", "-I", kernels, "-I", kernels / "include",
                  *(word for flag in ("-finclude-default-header", "-target-feature", "+ptx75", "-target-cpu", "sm_86",
                                      "-mlink-builtin-bitcode", str(self.library)) for word in ("-Xclang", flag)),
-                 *options, "-S", "-o", code, source], capture_output=True, text=True)
+                 "-DLANES=1", *options, "-S", "-o", code, source], capture_output=True, text=True)
             if done.returncode != 0:
                 sys.exit(f"{name} {' '.join(options)} does not compile:\n{done.stderr}")
             ptx = code.read_text()

@@ -1,15 +1,24 @@
 // SPDX-License-Identifier: MIT
 // The pixels that a work-item makes at once: eight of a row on a CPU, one elsewhere.
 //
+// Option: LANES  1 (default) | 8   the host says it for a device (host/src/device/program_cache.h)
+//
 // Kernels hold eight pixels of a row in the lanes of vectors. A CPU keeps the eight pixels in vector registers, if the
 // code is unrolled over lanes and cases. Elsewhere a work-item has one pixel at a time, in the first lane, and the
 // compiler drops the others, as nothing reads them. A GPU's work-item has registers for a fifth of the values of eight
 // pixels, and a compiler that makes code of its own for every lane needs minutes.
 #pragma once
 
-#if defined(__x86_64__) || defined(__aarch64__)
+#ifndef LANES
+#define LANES 1
+#endif
+#if LANES != 1 && LANES != 8
+#error "LANES must be 1 or 8"
+#endif
+enum { kLanes = LANES };  // those that count
+
+#if LANES == 8
 #define ON_CPU 1
-enum { kLanes = 8 };                                              // those that count
 typedef float8 Lanes;
 typedef int8 LaneBits;
 #define LANES_OF(lanes) (lanes)                                   // of a vector of eight
@@ -22,7 +31,6 @@ typedef int8 LaneBits;
 #define EACH_LANE(call) call, call, call, call, call, call, call, call  // compiles faster than an unrolled loop
 #else
 #define ON_CPU 0
-enum { kLanes = 1 };
 typedef float Lanes;
 typedef int LaneBits;
 #define LANES_OF(lanes) ((lanes).s0)

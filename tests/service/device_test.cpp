@@ -83,6 +83,20 @@ TEST(Device, AnUnknownSelectorListsWhatThereIs) {
   EXPECT_NE(device.status().message().find(Device::list()[0].name), std::string::npos);
 }
 
+TEST(Device, MakesEightPixelsAtOnceOnACpuOrAsTheEnvironmentSays) {
+  ASSERT_EQ(getenv("QUINCUNX_LANES"), nullptr);
+  const Device usual = Device::open().value();
+  const bool is_pocl = usual.info().platform == "Portable Computing Language";
+  EXPECT_EQ(usual.impl()->lanes, is_pocl && usual.info().kind == DeviceKind::kCpu ? 8 : 1);
+  setenv("QUINCUNX_LANES", "1", 1);
+  EXPECT_EQ(Device::open().value().impl()->lanes, 1);
+  setenv("QUINCUNX_LANES", "4", 1);
+  const auto refused = Device::open();
+  unsetenv("QUINCUNX_LANES");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.status().message(), "QUINCUNX_LANES is '4'; it must be 1 or 8");
+}
+
 TEST(Device, BorrowsACallersQueue) {
   auto owner = Device::open();
   ASSERT_TRUE(owner.ok());

@@ -9,8 +9,10 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 #include <fstream>
 #include <optional>
+#include <string_view>
 
 #include "device/device_impl.h"
 #include "quincunx/advanced/log.h"
@@ -81,12 +83,30 @@ bool lists_format(const cl::Context& context, const cl::ImageFormat& wanted) {
 }
 
 // All that follows from the device, the context and the queue.
-void learn(Device::Impl& impl) {
+// Mesa's compiler takes minutes for vectors of eight, on a CPU as well.
+int usual_lanes(const DeviceInfo& info) {
+  return info.kind == DeviceKind::kCpu && info.platform != "rusticl" ? 8 : 1;
+}
+
+Status choose_lanes(Device::Impl& impl) {
+  impl.lanes = usual_lanes(impl.info);
+  const char* wanted = std::getenv("QUINCUNX_LANES");
+  if (wanted == nullptr) return {};
+  const std::string_view text = wanted;
+  if (text != "1" && text != "8")
+    return Status::invalid(fmt::format("QUINCUNX_LANES is '{}'; it must be 1 or 8", text));
+  impl.lanes = text == "8" ? 8 : 1;
+  return {};
+}
+
+Status learn(Device::Impl& impl) {
+  if (Status status = choose_lanes(impl); !status.ok()) return status;
   impl.info.two_channel_images =
       impl.info.images && lists_format(impl.context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
   impl.keeps_programs = keeps_programs(impl.info);
   impl.timer = validated_timer(impl);
   impl.profile = find_profile(impl);
+  return {};
 }
 
 constexpr cl_int kNoPlatform = -1001;  // CL_PLATFORM_NOT_FOUND_KHR: there is no driver at all
@@ -346,7 +366,7 @@ Result<Device> Device::open(const std::string& selector, const cl_context_proper
     all.push_back(0);
     impl->context = cl::Context(impl->device, all.data());
     impl->queue = cl::CommandQueue(impl->context, impl->device, CL_QUEUE_PROFILING_ENABLE);
-    learn(*impl);
+    if (Status status = learn(*impl); !status.ok()) return status;
     return Device(std::move(impl));
   } catch (...) {
     return caught("Device::open", name);
@@ -366,7 +386,7 @@ Result<Device> Device::borrow(cl_context context, cl_device_id device, cl_comman
       return Status::invalid("the queue given to Device::borrow is out-of-order; it must be in-order");
     }
     impl->info = info_of(impl->device);
-    learn(*impl);
+    if (Status status = learn(*impl); !status.ok()) return status;
     return Device(std::move(impl));
   } catch (...) {
     return caught("Device::borrow", "a borrowed device");

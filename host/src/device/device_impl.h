@@ -31,6 +31,7 @@ struct Device::Impl {
   cl::CommandQueue queue;
   PassTimer timer = PassTimer::kNone;
   DeviceProfile profile;
+  int lanes = 1;  // pixels that a work-item makes at once: 8 or 1 (kernels/include/lanes.h)
   // The driver itself keeps what it compiles from one run to the next, so the program cache leaves kernels to it.
   bool keeps_programs = false;
   std::shared_ptr<BuiltPrograms> built = std::make_shared<BuiltPrograms>();

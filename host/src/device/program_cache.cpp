@@ -174,7 +174,8 @@ std::string kernel_source(const std::string& name) {
 }
 
 cl::Kernel build_kernel(const Device::Impl& device, const std::string& name, const std::string& options) {
-  const std::string all_options = fmt::format("{} {}", kCommonBuildOptions, options);
+  const std::string all_options =
+      fmt::format("{} -D LANES={} {}", kCommonBuildOptions, device.lanes, options);
   const std::string key = fmt::format("{} {}", name, all_options);
   BuiltPrograms& built = *device.built;
   {

@@ -28,8 +28,8 @@ class BuildError : public std::runtime_error {
   BuildError(const std::string& kernel, const std::string& options, const std::string& log);
 };
 
-// Builds or loads the kernel `name` of the embedded source `name`.cl, with `options` ("-D WEIGHT=1 -D ...") and the
-// options common to all kernels. The kernel object is the caller's own. Thread-safe. Throws cl::Error; a build failure
+// Builds or loads the kernel `name` of the embedded source `name`.cl, with `options` ("-D WEIGHT=1 -D ..."), the
+// device's LANES and the options common to all kernels. The kernel object is the caller's own. Thread-safe. Throws cl::Error; a build failure
 // throws BuildError.
 cl::Kernel build_kernel(const Device::Impl& device, const std::string& name, const std::string& options);
 

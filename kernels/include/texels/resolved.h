@@ -138,7 +138,7 @@ static inline void store_output4(OUTPUT_TEXELS texels, TexelLayout layout, int x
 // larger than the caches, and that is read when all of it is there.
 
 // At an address that is a multiple of 16 bytes.
-#if defined(__x86_64__) && defined(__clang__)
+#if LANES == 8 && defined(__clang__)
 #define STREAM(value, address) __builtin_nontemporal_store(value, address)
 #else
 #define STREAM(value, address) (*(address) = (value))

@@ -10,6 +10,7 @@
 // load gives linear light.
 #pragma once
 
+#include "lanes.h"
 #include "params.h"
 
 // Not zero, so that a misspelt option is an error.
@@ -82,7 +83,7 @@
 
 // Hints for a CPU that memory is used soon; any address will do. The processor itself stops at the end of a page of
 // memory. PoCL's prefetch() does nothing, and a GPU hides latency by other means.
-#if defined(__x86_64__) || defined(__aarch64__)
+#if LANES == 8
 #define WILL_READ(address) __builtin_prefetch(address)
 #define WILL_WRITE(address) __builtin_prefetch(address, 1)
 #else
