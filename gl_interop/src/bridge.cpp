@@ -102,6 +102,26 @@ Status check(const Context& context, const BridgeSettings& settings) {
   return {};
 }
 
+// Where pixels would else cross to the device and back. A CPU's copies are in place already.
+bool gains_by_external(const DeviceInfo& device) {
+  return device.imports_opaque_fds && !device.host_unified_memory;
+}
+
+Result<std::unique_ptr<Bridge>> make_external(const Device& device, const BridgeSettings& settings) {
+  try {
+    const auto exporter = Exporter::create(device);
+    return std::unique_ptr<Bridge>(std::make_unique<HostCopy>(
+        device, settings, exporter->reason(), Transfer::kShared, PlacedForm{}, exporter.get()));
+  } catch (const std::exception& error) {
+    return Status::unsupported(error.what());
+  }
+}
+
+Status insisted(const char* way, const Status& status) {
+  return {status.code(),
+          fmt::format("interop '{}' cannot be used: {}; use 'copy' or 'auto'", way, status.message())};
+}
+
 Result<std::unique_ptr<Bridge>> make_host_copy(const Device& device, const BridgeSettings& settings,
                                                std::string reason) {
   const Transfer transfer = device.info().host_unified_memory ? Transfer::kZeroCopy : Transfer::kExplicit;
@@ -128,7 +148,16 @@ Result<Device> open_device(const Context& context, const std::string& selector, 
     candidates.push_back(named->info());
   }
   std::string why;
-  if (auto device = open_sharing(context, candidates, &why)) return *std::move(device);
+  if (interop != Interop::kExternal) {
+    if (auto device = open_sharing(context, candidates, &why)) return *std::move(device);
+  }
+  if (interop != Interop::kGl) {
+    const DeviceUuid drawing = gl_device_uuid();
+    for (const DeviceInfo& candidate : candidates) {
+      if (candidate.imports_opaque_fds && candidate.uuid == drawing)
+        return Device::open(std::to_string(candidate.index));
+    }
+  }
   if (interop == Interop::kGl) {
     return Status::unsupported(
         fmt::format("interop 'gl' needs an OpenCL device that shares with '{}', and {}; use "
@@ -144,6 +173,8 @@ const char* name_of(Interop interop) {
       return "auto";
     case Interop::kGl:
       return "gl";
+    case Interop::kExternal:
+      return "external";
     case Interop::kCopy:
       return "copy";
   }
@@ -214,18 +245,24 @@ Result<std::unique_ptr<Bridge>> Bridge::create(const Context& context, const Dev
   }
   if (placed && settings.interop == Interop::kAuto) {
     reason = "placed targets lie in memory of OpenCL's, not in OpenGL's textures";
-  } else if (settings.interop != Interop::kCopy) {
+  } else if (settings.interop == Interop::kAuto || settings.interop == Interop::kGl) {
     auto shared = GlSharing::create(context, device, settings);
     if (shared.ok()) {
       log_line(LogLevel::kInfo, fmt::format("interop: gl ({})", shared.value()->reason()));
       return shared;
     }
-    if (settings.interop == Interop::kGl) {
-      return Status(
-          shared.status().code(),
-          fmt::format("interop 'gl' cannot be used: {}; use 'copy' or 'auto'", shared.status().message()));
-    }
+    if (settings.interop == Interop::kGl) return insisted("gl", shared.status());
     reason = shared.status().message();
+  }
+  if (settings.interop == Interop::kExternal ||
+      (settings.interop == Interop::kAuto && gains_by_external(device.info()))) {
+    auto external = make_external(device, settings);
+    if (external.ok()) {
+      log_line(LogLevel::kInfo, fmt::format("interop: external ({})", external.value()->reason()));
+      return external;
+    }
+    if (settings.interop == Interop::kExternal) return insisted("external", external.status());
+    reason += "; " + external.status().message();
   }
   auto copy = make_host_copy(device, settings, reason);
   if (copy.ok()) log_line(LogLevel::kInfo, fmt::format("interop: copy ({})", reason));

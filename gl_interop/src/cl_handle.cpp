@@ -45,6 +45,10 @@ void check_cl(cl_int code, const char* call) {
   if (code != CL_SUCCESS) throw InteropError(fmt::format("{} failed: {}", call, describe(code)));
 }
 
+void check_status(const Status& status) {
+  if (!status.ok()) throw InteropError(status.message());
+}
+
 void log_release_failure(cl_int code) {
   log_line(LogLevel::kWarning,
            fmt::format("releasing an OpenCL object of the bridge failed: {}", describe(code)));

@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "quincunx/status.h"
+
 namespace quincunx::gl {
 
 class InteropError : public std::runtime_error {
@@ -18,6 +20,8 @@ class InteropError : public std::runtime_error {
 
 // Throws InteropError "clEnqueueMapBuffer failed: CL_MAP_FAILURE (-12)" unless `code` is CL_SUCCESS.
 void check_cl(cl_int code, const char* call);
+
+void check_status(const Status& status);  // throws InteropError of its message unless it is ok
 
 void log_release_failure(cl_int code);
 

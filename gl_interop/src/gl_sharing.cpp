@@ -51,12 +51,6 @@ bool has_cl_extension(cl_device_id device, const char* name) {
   return (" " + all).find(fmt::format(" {} ", name)) != std::string::npos;
 }
 
-void check_gl(const char* what) {
-  if (const GLenum error = ErrorScope::take(); error != GL_NO_ERROR) {
-    throw InteropError(fmt::format("{} failed with OpenGL error 0x{:04x}", what, error));
-  }
-}
-
 void probe(const Device& device, PixelFormat format) {
   const GlFormat names = gl_format(format);
   const Texture texture = Texture::create();

@@ -104,8 +104,8 @@ void SlotImages::resize(Extent render) {
 }
 
 // Viewport targets: memory of its own for each slot. Placed ones: all slots in one allocation.
-void HostCopy::make_slots(Transfer transfer) {
-  const bool placed = settings_.targets == Targets::kPlaced;
+void HostCopy::make_slots(Transfer transfer, const Exporter* exporter) {
+  const bool placed = settings_.targets == Targets::kPlaced && transfer != Transfer::kShared;
   const FrameLayout layout = lay_out(planes_, settings_.target_extent, settings_.targets, form_.row_texels);
   const std::size_t bytes = PixelMemory::whole_pages(layout.bytes);
   const auto count = static_cast<std::size_t>(settings_.slots);
@@ -113,14 +113,14 @@ void HostCopy::make_slots(Transfer transfer) {
   slots_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     PixelBuffer pixels = placed ? PixelBuffer(device_, memory, i * bytes, bytes)
-                                : PixelBuffer(device_, layout.bytes, transfer);
+                                : PixelBuffer(device_, layout.bytes, transfer, exporter);
     SlotImages images(device_, planes_, layout, form_, pixels);
     slots_.push_back({.pixels = std::move(pixels), .images = std::move(images), .read_back = {}});
   }
 }
 
 HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::string reason,
-                   Transfer transfer, const PlacedForm& form)
+                   Transfer transfer, const PlacedForm& form, const Exporter* exporter)
     : Bridge(settings, std::move(reason)),
       device_(device),
       planes_(planes_of(settings)),
@@ -130,9 +130,9 @@ HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::st
       ring_(settings.slots, settings.target_extent),
       output_(device,
               static_cast<std::size_t>(settings.output_extent.area()) * bytes_per_pixel(settings.picture),
-              transfer),
+              transfer, exporter),
       presented_(Texture::create()) {
-  make_slots(transfer);
+  make_slots(transfer, exporter);
 
   output_view_ = {.memory = output_.cl_buffer(),
                   .format = settings.picture,
@@ -161,6 +161,7 @@ HostCopy::~HostCopy() {
 void HostCopy::read_back(Slot& slot, const FrameTextures& from, Extent render) {
   const PackScope restore(before());
   SharedFrame regions = slot.images.regions();
+  slot.pixels.begin_gl();
   glBindFramebuffer(GL_READ_FRAMEBUFFER, reader_.get());
   glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.pixels.gl_buffer());
   for (const Plane& plane : planes_) {
@@ -182,11 +183,12 @@ void HostCopy::read_back(Slot& slot, const FrameTextures& from, Extent render) {
     // Else the texture would outlive its end, and be seen by a framebuffer of another size.
     glFramebufferTexture2D(GL_READ_FRAMEBUFFER, attachment, GL_TEXTURE_2D, 0, 0);
   }
+  slot.pixels.end_gl();
   slot.read_back.set();
 }
 
 void HostCopy::hand_over(Slot& slot, Extent render) {
-  if (slot.pixels.transfer() == Transfer::kZeroCopy) {
+  if (slot.pixels.transfer() != Transfer::kExplicit) {
     slot.pixels.hand_over();
     return;
   }
@@ -223,6 +225,8 @@ Result<const RenderTargets*> HostCopy::begin_draw(int slot, Extent render) {
 Status HostCopy::take_back(const char* call, int slot) {
   try {
     PixelBuffer& pixels = slot_at(slot).pixels;
+    // Where the device keeps the order nothing else holds a caller who runs ahead, and finds a device that hangs.
+    if (pixels.device_orders()) slot_at(slot).read_back.wait();
     if (!pixels.host_owns()) pixels.take_back(PixelBuffer::Access::kOverwrite);
     pixels.wait();
     resize(slot_at(slot), ring_.render(slot));
@@ -251,7 +255,7 @@ Result<SharedFrame> HostCopy::acquire(int slot) {
   if (Status status = ring_.acquire(slot); !status.ok()) return status;
   const Stopwatch watch;
   try {
-    slot_at(slot).read_back.wait();
+    if (!slot_at(slot).pixels.device_orders()) slot_at(slot).read_back.wait();
     // The readers of a retired slot are all enqueued by now and this frame's are not yet: a map here is done
     // when the last frame is, so that begin_draw() need not wait for this one.
     for (int other = 0; other < slots(); ++other) {
@@ -274,8 +278,10 @@ Result<SharedFrame> HostCopy::acquire(int slot) {
 
 Result<ImageView> HostCopy::begin_present() {
   try {
-    uploaded_.wait();
-    if (output_.transfer() == Transfer::kZeroCopy) output_.hand_over();
+    if (!output_.device_orders()) uploaded_.wait();
+    if (output_.transfer() != Transfer::kExplicit) output_.hand_over();
+    reader_of_output_.release();
+    pixels_ = nullptr;
     presenting_ = true;
     return output_view_;
   } catch (const std::exception& error) {
@@ -287,7 +293,7 @@ Status HostCopy::present(GLuint into) {
   if (Status status = check_present(presenting_, into); !status.ok()) return status;
   const Stopwatch watch;
   try {
-    if (output_.transfer() == Transfer::kZeroCopy) {
+    if (output_.transfer() != Transfer::kExplicit) {
       output_.take_back(PixelBuffer::Access::kRead);
     } else {
       output_.enqueue_read();
@@ -298,15 +304,27 @@ Status HostCopy::present(GLuint into) {
   }
   const UnpackScope restore(before());
   const GlFormat names = gl_format(settings_.picture);
+  output_.begin_gl();
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, output_.gl_buffer());
   texture_write(into != 0 ? into : presented_.get(), 0, settings_.output_extent, names.format, names.type,
                 output_.gl_pointer(0));
+  output_.end_gl();
   uploaded_.set();
   presenting_ = false;
   traffic_.bytes_out =
       static_cast<std::uint64_t>(settings_.output_extent.area()) * bytes_per_pixel(settings_.picture);
   traffic_.present_ms = watch.milliseconds();
   return {};
+}
+
+const std::uint8_t* HostCopy::presented_pixels() {
+  if (output_.bytes() != nullptr) return output_.bytes();
+  if (pixels_ == nullptr && !presenting_) {
+    pixels_ = reader_of_output_.read(
+        output_.gl_buffer(), output_.offset(),
+        static_cast<std::size_t>(settings_.output_extent.area()) * bytes_per_pixel(settings_.picture));
+  }
+  return pixels_;
 }
 
 }  // namespace quincunx::gl

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// HostCopy: the bridge for every pair of drivers. Pixels travel through host memory.
+// HostCopy: the bridge by pixel buffers: through host memory for every pair of drivers, or through memory that both
+// have imported.
 //
 // submit() has GL read the viewport's rectangle of each plane into the slot's pixel buffer, behind a fence;
-// acquire() waits for that fence and hands the buffer to OpenCL. The pixel buffers are the ring: all slots
-// are drawn in one framebuffer, because GL itself keeps its reads before the next frame's writes.
+// acquire() waits for that fence, unless the device itself keeps the order, and hands the buffer to OpenCL. The pixel
+// buffers are the ring: all slots are drawn in one framebuffer, because GL itself keeps its reads before the next
+// frame's writes.
 //
 // With placed targets the slots are parts of one allocation, and framebuffer and images have the viewport's size: made
 // again in begin_draw(), when OpenCL has given the slot back, and only where the size is another.
@@ -86,12 +88,14 @@ class SlotImages {
 
 class HostCopy final : public Bridge {
  public:
-  // `settings` are checked by Bridge::create(). Throws InteropError or std::runtime_error.
+  // `settings` are checked by Bridge::create(); `exporter` for kShared. Throws InteropError or std::runtime_error.
   HostCopy(const Device& device, const BridgeSettings& settings, std::string reason, Transfer transfer,
-           const PlacedForm& form = {});
+           const PlacedForm& form = {}, const Exporter* exporter = nullptr);
   ~HostCopy() override;
 
-  Interop kind() const override { return Interop::kCopy; }
+  Interop kind() const override {
+    return output_.transfer() == Transfer::kShared ? Interop::kExternal : Interop::kCopy;
+  }
   Storage storage() const override { return form_.storage; }
   Memory memory() const override;
   Result<const RenderTargets*> begin_draw(int slot, Extent render) override;
@@ -101,7 +105,7 @@ class HostCopy final : public Bridge {
   Result<ImageView> begin_present() override;
   Status present(GLuint into = 0) override;
   GLuint presented_texture() const override { return presented_.get(); }
-  const std::uint8_t* presented_pixels() override { return output_.bytes(); }
+  const std::uint8_t* presented_pixels() override;
 
  private:
   struct Slot {
@@ -111,7 +115,7 @@ class HostCopy final : public Bridge {
   };
 
   Slot& slot_at(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
-  void make_slots(Transfer transfer);
+  void make_slots(Transfer transfer, const Exporter* exporter);
   Status take_back(const char* call, int slot);
   void resize(Slot& slot, Extent render);
   void read_back(Slot& slot, const FrameTextures& from, Extent render);
@@ -130,6 +134,8 @@ class HostCopy final : public Bridge {
   ImageView output_view_;
   Texture presented_;
   Fence uploaded_;
+  BufferReader reader_of_output_;
+  const std::uint8_t* pixels_ = nullptr;  // what it read of the current picture
   bool presenting_ = false;
 };
 

@@ -29,8 +29,14 @@ std::size_t PixelMemory::whole_pages(std::size_t bytes) {
   return (bytes + kPageBytes - 1) / kPageBytes * kPageBytes;
 }
 
-PixelMemory::PixelMemory(const Device& device, std::size_t bytes, Transfer transfer)
+PixelMemory::PixelMemory(const Device& device, std::size_t bytes, Transfer transfer, const Exporter* exporter)
     : transfer_(transfer), size_(whole_pages(bytes)) {
+  if (transfer_ == Transfer::kShared) {
+    shared_ = exporter->allocate(device, size_);
+    gl_start_ = static_cast<std::intptr_t>(shared_->start);
+    bytes_ = shared_->bytes;
+    return;
+  }
   std::uint8_t* const memory = capabilities().persistent_map ? map_buffer() : client_memory();
   bytes_ = memory + bytes_to_page(memory);
   gl_start_ = buffer_ ? bytes_ - memory : reinterpret_cast<std::intptr_t>(bytes_);
@@ -46,8 +52,7 @@ PixelMemory::PixelMemory(const Device& device, std::size_t bytes, Transfer trans
 ClMem PixelMemory::sub_buffer(std::size_t offset, std::size_t bytes) const {
   const cl_buffer_region region = {offset, bytes};
   cl_int code = CL_SUCCESS;
-  ClMem part =
-      ClMem::adopt(clCreateSubBuffer(memory_.get(), 0, CL_BUFFER_CREATE_TYPE_REGION, &region, &code));
+  ClMem part = ClMem::adopt(clCreateSubBuffer(cl_buffer(), 0, CL_BUFFER_CREATE_TYPE_REGION, &region, &code));
   check_cl(code, "clCreateSubBuffer for a part of a pixel buffer");
   return part;
 }
@@ -62,9 +67,11 @@ void PixelMemory::never_free(const std::shared_ptr<PixelMemory>& memory) noexcep
   memory->kept_before_ = std::exchange(*newest, memory);
 }
 
-PixelBuffer::PixelBuffer(const Device& device, std::size_t bytes, Transfer transfer)
-    : PixelBuffer(device, std::make_shared<PixelMemory>(device, bytes, transfer), 0,
-                  PixelMemory::whole_pages(bytes)) {}
+PixelBuffer::PixelBuffer(const Device& device, std::size_t bytes, Transfer transfer, const Exporter* exporter)
+    : PixelBuffer(device, std::make_shared<PixelMemory>(device, bytes, transfer, exporter), 0,
+                  PixelMemory::whole_pages(bytes)) {
+  if (exporter != nullptr) order_ = exporter->order(device);
+}
 
 PixelBuffer::PixelBuffer(const Device& device, std::shared_ptr<PixelMemory> memory, std::size_t offset,
                          std::size_t bytes)
@@ -118,7 +125,23 @@ void PixelBuffer::settle() noexcept {
   PixelMemory::never_free(memory_);  // a device that does not answer may still be at work
 }
 
+void PixelBuffer::begin_gl() {
+  if (order_) order_->gl_waits(gl_buffer());
+}
+
+void PixelBuffer::end_gl() {
+  if (order_) order_->gl_done(gl_buffer());
+}
+
 void PixelBuffer::take_back(Access access) {
+  if (transfer() == Transfer::kShared) {
+    cl_event released = nullptr;
+    check_status(memory_->shared().release(order_ ? nullptr : &released));
+    pending_ = ClEvent::adopt(released);
+    host_owns_ = true;
+    if (order_) order_->cl_done();
+    return;
+  }
   const cl_map_flags flags = access == Access::kRead ? CL_MAP_READ : CL_MAP_WRITE_INVALIDATE_REGION;
   cl_int code = CL_SUCCESS;
   cl_event event = nullptr;
@@ -133,6 +156,12 @@ void PixelBuffer::take_back(Access access) {
 
 void PixelBuffer::hand_over() {
   if (!host_owns_) return;
+  if (transfer() == Transfer::kShared) {
+    if (order_) order_->cl_waits();
+    check_status(memory_->shared().acquire());
+    host_owns_ = false;
+    return;
+  }
   wait();
   check_cl(clEnqueueUnmapMemObject(device_.queue(), cl_buffer(), own_bytes(), 0, nullptr, nullptr),
            "clEnqueueUnmapMemObject");

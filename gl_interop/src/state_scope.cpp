@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "cl_handle.h"
 #include "quincunx/advanced/log.h"
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/handle.h"
@@ -196,6 +197,11 @@ GLenum ErrorScope::take() {
   for (int i = 0; i < 8 && glGetError() != GL_NO_ERROR; ++i) {
   }
   return first;
+}
+
+void check_gl(const char* what) {
+  if (const GLenum error = ErrorScope::take(); error != GL_NO_ERROR)
+    throw InteropError(fmt::format("{} failed with OpenGL error 0x{:04x}", what, error));
 }
 
 ErrorScope::~ErrorScope() {

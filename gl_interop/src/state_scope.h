@@ -154,4 +154,7 @@ class ErrorScope {
   GLenum before_;
 };
 
+// Throws InteropError "glImportMemoryFdEXT failed with OpenGL error 0x0501" where there was one since the last call.
+void check_gl(const char* what);
+
 }  // namespace quincunx::gl

@@ -175,8 +175,10 @@ void add_picture_options(tools::CommandLine& line, PictureOptions& options,
 }
 
 void add_machine_options(tools::CommandLine& line, PictureOptions& options) {
-  static const std::map<std::string, gl::Interop> kInterops = {
-      {"auto", gl::Interop::kAuto}, {"gl", gl::Interop::kGl}, {"copy", gl::Interop::kCopy}};
+  static const std::map<std::string, gl::Interop> kInterops = {{"auto", gl::Interop::kAuto},
+                                                               {"gl", gl::Interop::kGl},
+                                                               {"external", gl::Interop::kExternal},
+                                                               {"copy", gl::Interop::kCopy}};
   static const std::map<std::string, gl::Platform> kPlatforms = {{"auto", gl::Platform::kAuto},
                                                                  {"surfaceless", gl::Platform::kSurfaceless},
                                                                  {"device", gl::Platform::kDevice}};

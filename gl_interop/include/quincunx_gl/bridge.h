@@ -31,12 +31,12 @@ namespace quincunx::gl {
 class CallerTextures;
 enum class Before;
 
-enum class Interop { kAuto, kGl, kCopy };
+enum class Interop { kAuto, kGl, kExternal, kCopy };
 
-QUINCUNX_API const char* name_of(Interop interop);  // "gl", "copy", "auto"
+QUINCUNX_API const char* name_of(Interop interop);  // "gl", "external", "copy", "auto"
 
 struct BridgeSettings {
-  Interop interop = Interop::kAuto;  // kGl and kCopy insist: create() fails where the backend cannot work
+  Interop interop = Interop::kAuto;  // the others insist: create() fails where the backend cannot work
   Extent target_extent = {};         // size of the inputs
   Extent output_extent = {};         // size of the presented picture
   bool depth = false;                // hand depth over
@@ -52,7 +52,7 @@ struct BridgeSettings {
   PixelFormat picture =
       PixelFormat::kRGBA8;  // RGBA8: the presented picture comes back; RGBA16F, RGBA32F: the linear one
   int slots = 3;            // 2 to 16; from 3 on a frame can be drawn while others are resolved
-  Targets targets = Targets::kViewport;  // kPlaced: HostCopy only, kGl then fails
+  Targets targets = Targets::kViewport;  // kPlaced: not with kGl
 };
 
 // Returns settings that hand over what frames of this plan need.
@@ -89,7 +89,7 @@ class QUINCUNX_API Bridge {
   Bridge(const Bridge&) = delete;
   Bridge& operator=(const Bridge&) = delete;
 
-  virtual Interop kind() const = 0;                      // kGl or kCopy
+  virtual Interop kind() const = 0;                      // kGl, kExternal or kCopy
   const std::string& reason() const { return reason_; }  // one sentence: why this backend
   virtual Storage storage() const = 0;                   // storage of the inputs
   int slots() const { return settings_.slots; }

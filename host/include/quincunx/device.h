@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "quincunx/advanced/export.h"
+#include "quincunx/advanced/external.h"
 #include "quincunx/image.h"
 #include "quincunx/status.h"
 
@@ -38,6 +39,11 @@ struct DeviceInfo {
   // 0: they cannot.
   int image_pitch_texels = 0;
   bool gl_sharing = false;  // cl_khr_gl_sharing is advertised (the bridge still probes it)
+  DeviceUuid uuid = {};     // zeros: the driver does not tell (cl_khr_device_uuid)
+  // Handles of other APIs that are taken (cl_khr_external_memory, cl_khr_external_semaphore_opaque_fd).
+  bool imports_opaque_fds = false;
+  bool imports_dma_bufs = false;
+  bool imports_semaphores = false;
 };
 
 struct FrontKey;
@@ -81,6 +87,12 @@ class QUINCUNX_API Device {
   // For tools and tests: no frame uses them. Host texels have the view's format.
   Status upload(const ImageView& image, Extent extent, const void* texels, std::size_t row_bytes = 0) const;
   Status download(const ImageView& image, Extent extent, void* texels, std::size_t row_bytes = 0) const;
+
+  // Imports memory and semaphores of another API. Errors: kInvalidArgument for a bad field and for memory of another
+  // device, kUnsupported where the device takes no such handle, kDeviceFailure where the driver refuses it.
+  Result<SharedMemory> import_memory(const ExternalMemory& external) const;
+  // `fd`: an opaque one (VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT), which stays the caller's.
+  Result<Semaphore> import_semaphore(int fd) const;
 
   Status finish() const;  // waits for all queued work
 

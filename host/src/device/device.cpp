@@ -70,6 +70,7 @@ DeviceInfo info_of(const cl::Device& device) {
   info.host_unified_memory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != 0;
   info.image_pitch_texels = info.images ? image_pitch_texels(device) : 0;
   info.gl_sharing = has_extension(device, "cl_khr_gl_sharing");
+  learn_imports(device(), info);
   return info;
 }
 
