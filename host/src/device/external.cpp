@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "quincunx/advanced/external.h"
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,6 +10,10 @@
 #include <vector>
 
 #include "device/device_impl.h"
+
+// Of OpenCL 3.0: null in a program whose loader is older.
+extern "C" cl_mem CL_API_CALL clCreateBufferWithProperties(cl_context, const cl_ulong*, cl_mem_flags, size_t,
+                                                           void*, cl_int*) __attribute__((weak));
 
 namespace quincunx {
 namespace {
@@ -27,8 +30,6 @@ constexpr Property kSemaphoreType = 0x203D;           // CL_SEMAPHORE_TYPE_KHR
 constexpr Property kBinary = 1;                       // CL_SEMAPHORE_TYPE_BINARY_KHR
 
 using SemaphoreHandle = void*;  // cl_semaphore_khr
-using CreateBuffer = cl_mem(CL_API_CALL*)(cl_context, const Property*, cl_mem_flags, std::size_t, void*,
-                                          cl_int*);
 using ChangeSides = cl_int(CL_API_CALL*)(cl_command_queue, cl_uint, const cl_mem*, cl_uint, const cl_event*,
                                          cl_event*);
 using CreateSemaphore = SemaphoreHandle(CL_API_CALL*)(cl_context, const Property*, cl_int*);
@@ -109,17 +110,13 @@ Status check(const ExternalMemory& external, const DeviceInfo& device) {
 }
 
 cl::Buffer import_fd(const Device::Impl& device, const ExternalMemory& external, OwnFd& fd) {
-  // A function of OpenCL 3.0: a program that is linked with an older loader must start nevertheless.
-  static const auto create =
-      reinterpret_cast<CreateBuffer>(::dlsym(RTLD_DEFAULT, "clCreateBufferWithProperties"));
-  if (create == nullptr)
-    throw std::runtime_error(
-        "the OpenCL loader is older than OpenCL 3.0: it has no clCreateBufferWithProperties");
+  if (clCreateBufferWithProperties == nullptr)
+    throw std::runtime_error("the OpenCL loader is older than 3.0: it has no clCreateBufferWithProperties");
   const Property type = external.handle == MemoryHandle::kDmaBuf ? kMemoryDmaBuf : kMemoryFd;
   const std::array<Property, 3> properties = {type, fd.property(), 0};
   cl_int code = CL_SUCCESS;
-  const cl_mem memory =
-      create(device.context(), properties.data(), CL_MEM_READ_WRITE, external.bytes, nullptr, &code);
+  const cl_mem memory = clCreateBufferWithProperties(device.context(), properties.data(), CL_MEM_READ_WRITE,
+                                                     external.bytes, nullptr, &code);
   if (code != CL_SUCCESS) throw cl::Error(code, "clCreateBufferWithProperties");
   fd.give_away();
   return adopt<cl::Buffer>(memory);
@@ -271,6 +268,10 @@ Status Semaphore::signal() {
   } catch (...) {
     return caught("signal", impl_->device->info.name);
   }
+}
+
+cl_command_queue Semaphore::queue() const {
+  return impl_->device->queue();
 }
 
 Result<Semaphore> Device::import_semaphore(int callers) const {

@@ -73,7 +73,7 @@ Status caught(const std::string& subject, const std::string& device_name) {
   } catch (const cl::Error& error) {
     return Status::device(fmt::format("{}({}) on '{}' failed: {} ({})", error.what(), subject, device_name,
                                       error_name(error.err()), error.err()));
-  } catch (const AllocationError& error) {
+  } catch (const StatusError& error) {
     return error.status();
   } catch (const std::bad_alloc&) {
     return Status::device("out of memory");  // short enough to need none

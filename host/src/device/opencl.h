@@ -30,10 +30,10 @@ Wrapper borrow(typename Wrapper::cl_type handle) {
 
 const char* error_name(cl_int code);  // "CL_OUT_OF_RESOURCES"
 
-// Memory that the device would not give.
-class AllocationError : public std::runtime_error {
+// A Status on its way to the public call that returns it.
+class StatusError : public std::runtime_error {
  public:
-  explicit AllocationError(const Status& status) : std::runtime_error(status.message()), status_(status) {}
+  explicit StatusError(const Status& status) : std::runtime_error(status.message()), status_(status) {}
   const Status& status() const { return status_; }
 
  private:

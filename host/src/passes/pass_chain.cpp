@@ -79,7 +79,7 @@ void place(ImageView& view, Area area, Extent render) {
 
 Image allocate_image(const Device& device, Extent extent, PixelFormat format, Storage storage) {
   Result<Image> made = device.allocate(extent, format, storage);
-  if (!made.ok()) throw AllocationError(made.status());
+  if (!made.ok()) throw StatusError(made.status());
   return std::move(made).value();
 }
 

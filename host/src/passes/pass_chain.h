@@ -3,7 +3,7 @@
 // frame.
 //
 // Everything is allocated at construction. Not thread-safe. May throw cl::Error, construction also BuildError and
-// AllocationError.
+// StatusError.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ namespace quincunx {
 // Sets the views of the caller's inputs from frame.inputs and frame.previous.
 void bind_inputs(PassFrame& frame);
 
-// Throws AllocationError.
+// Throws StatusError.
 Image allocate_image(const Device& device, Extent extent, PixelFormat format,
                      Storage storage = Storage::kBuffer);
 

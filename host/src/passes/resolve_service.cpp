@@ -46,6 +46,22 @@ Status check_events(std::span<const cl_event> events, cl_context context) {
   return {};
 }
 
+Status check_semaphores(const char* field, std::span<Semaphore* const> semaphores, cl_command_queue queue) {
+  for (std::size_t i = 0; i < semaphores.size(); ++i) {
+    if (semaphores[i] == nullptr)
+      return Status::invalid(fmt::format("{}[{}] is null; leave it out", field, i));
+    if (semaphores[i]->queue() != queue) {
+      return Status::invalid(
+          fmt::format("{}[{}] is of another device; import it by the service's own", field, i));
+    }
+  }
+  return {};
+}
+
+void check_ok(const Status& status) {
+  if (!status.ok()) throw StatusError(status);
+}
+
 // Before everything that is enqueued later on the queue, which is in-order.
 void wait_in_queue(const cl::CommandQueue& queue, std::span<const cl_event> events) {
   if (events.empty()) return;
@@ -174,8 +190,14 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
   try {
     refused.status = check(inputs, focus, outputs);
     if (refused.ok()) refused.status = check_events(sync.wait_for, device.context());
+    for (const auto& [field, semaphores] : {std::pair{"wait_semaphores", sync.wait_semaphores},
+                                            {"signal_semaphores", sync.signal_semaphores}}) {
+      if (refused.ok()) refused.status = check_semaphores(field, semaphores, device.queue());
+    }
     if (!refused.ok()) return refused;
     wait_in_queue(device.impl()->queue, sync.wait_for);
+    for (Semaphore* semaphore : sync.wait_semaphores)
+      check_ok(semaphore->wait());
     if (observer && !observer(inputs, focus)) observer = nullptr;
     FrameRing::Slot& slot = ring.begin();
     slot.report.frame_index = inputs.frame_index;
@@ -190,6 +212,8 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
     advice.look_at(picture.plan(), inputs);
     ring.commit();
     picture.keep(inputs);
+    for (Semaphore* semaphore : sync.signal_semaphores)
+      check_ok(semaphore->signal());
     if (sync.done != nullptr)
       *sync.done = retained(slot.done);  // last, so that no event is left of a failed frame
     return slot.report;

@@ -75,9 +75,9 @@ class QUINCUNX_API Semaphore {
   Semaphore(Semaphore&&) noexcept;
   Semaphore& operator=(Semaphore&&) noexcept;
 
-  Status wait();  // later commands begin when it was signalled
-  Status
-  signal();  // when all earlier commands are done; flushes the queue, so that the other side may wait for it
+  Status wait();    // later commands begin when it was signalled
+  Status signal();  // when earlier commands are done; flushes the queue, so that the other side may wait
+  cl_command_queue queue() const;  // the device's
 
  private:
   friend class Device;
