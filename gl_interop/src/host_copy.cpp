@@ -141,6 +141,7 @@ HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::st
   texture_storage(presented_.get(), 1, gl_format(settings.picture).internal, settings.output_extent);
   if (settings.depth && !capabilities().reads_depth) depth_reader_ = DepthReader(settings.target_extent);
 
+  prepare_shaders();
   if (settings.imports) return;
   targets_ = &pool_.at(settings.targets == Targets::kPlaced ? Extent{1, 1} : settings.target_extent);
   // One hand-over in advance finds what the driver refuses, and leaves nothing to be made in the first frame.
@@ -152,6 +153,21 @@ HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::st
     throw InteropError(fmt::format(
         "reading the render targets into a pixel buffer failed with OpenGL error 0x{:04x}", error));
   }
+}
+
+// Only where all of a slot is in a shader's reach.
+void HostCopy::prepare_shaders() {
+  GLint64 reach = 0;
+  if (capabilities().api != Api::kGl45) return;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &reach);
+  const std::size_t largest = std::max(slots_.front().pixels.size(), output_.size());
+  shades_ = output_.transfer() == Transfer::kShared && !settings_.imports &&
+            settings_.targets == Targets::kViewport && static_cast<GLint64>(largest) <= reach;
+  if (!shades_) return;
+  for (const Plane& plane : planes_) {
+    if (const auto kind = TexelCopy::of(plane)) texels_.prepare(*kind, false);
+  }
+  if (const auto kind = TexelCopy::of_picture(settings_.picture)) texels_.prepare(*kind, true);
 }
 
 HostCopy::~HostCopy() {
@@ -170,6 +186,11 @@ void HostCopy::read_back(Slot& slot, const FrameTextures& from, Extent render) {
     const GLuint texture = texture_of(from, plane.kind);
     const bool is_depth = plane.kind == PlaneKind::kDepth && has_depth_format(texture);
     void* const start = slot.pixels.gl_pointer(view.offset);
+    if (const auto kind = TexelCopy::of(plane); shades_ && kind) {
+      texels_.to_buffer(*kind, texture, render, slot.pixels.gl_buffer(), slot.pixels.offset() + view.offset,
+                        view.pitch, before());
+      continue;
+    }
     glPixelStorei(GL_PACK_ROW_LENGTH, static_cast<GLint>(view.pitch / bytes_per_pixel(plane.format)));
     if (is_depth && !capabilities().reads_depth) {
       depth_reader_.read(texture, render, start, before());
@@ -305,9 +326,14 @@ Status HostCopy::present(GLuint into) {
   const UnpackScope restore(before());
   const GlFormat names = gl_format(settings_.picture);
   output_.begin_gl();
-  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, output_.gl_buffer());
-  texture_write(into != 0 ? into : presented_.get(), 0, settings_.output_extent, names.format, names.type,
-                output_.gl_pointer(0));
+  if (const auto kind = TexelCopy::of_picture(settings_.picture); shades_ && kind && into == 0) {
+    texels_.to_texture(*kind, presented_.get(), settings_.output_extent, output_.gl_buffer(),
+                       output_.offset(), output_view_.pitch, before());
+  } else {
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, output_.gl_buffer());
+    texture_write(into != 0 ? into : presented_.get(), 0, settings_.output_extent, names.format, names.type,
+                  output_.gl_pointer(0));
+  }
   output_.end_gl();
   uploaded_.set();
   presenting_ = false;

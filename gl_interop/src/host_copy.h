@@ -23,6 +23,7 @@
 #include "quincunx_gl/bridge.h"
 #include "quincunx_gl/render_targets.h"
 #include "slot_ring.h"
+#include "texel_copy.h"
 
 namespace quincunx::gl {
 
@@ -120,6 +121,7 @@ class HostCopy final : public Bridge {
   void resize(Slot& slot, Extent render);
   void read_back(Slot& slot, const FrameTextures& from, Extent render);
   void hand_over(Slot& slot, Extent render);
+  void prepare_shaders();
 
   Device device_;
   std::vector<Plane> planes_;
@@ -128,6 +130,8 @@ class HostCopy final : public Bridge {
   const RenderTargets* targets_ = nullptr;  // that are drawn or were drawn last; none with imports
   Framebuffer reader_;                      // through which textures are read
   DepthReader depth_reader_;
+  TexelCopy texels_;     // for kShared
+  bool shades_ = false;  // it is used
   SlotRing ring_;
   std::vector<Slot> slots_;
   PixelBuffer output_;

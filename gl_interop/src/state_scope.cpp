@@ -137,6 +137,24 @@ ComputeScope::~ComputeScope() {
   glUseProgram(static_cast<GLuint>(program_));
 }
 
+StorageScope::StorageScope(Before before) {
+  if (before != Before::kAsked) return;
+  glGetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &generic_);
+  glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, 0, &buffer_);
+  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, 0, &start_);
+  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, 0, &size_);
+}
+
+StorageScope::~StorageScope() {
+  if (size_ == 0) {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLuint>(buffer_));
+  } else {
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLuint>(buffer_),
+                      static_cast<GLintptr>(start_), static_cast<GLsizeiptr>(size_));
+  }
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(generic_));
+}
+
 ClearScope::ClearScope() {
   for (GLuint i = 0; i < colour_.size(); ++i) {
     glGetBooleani_v(GL_COLOR_WRITEMASK, i, colour_[i].data());

@@ -97,6 +97,21 @@ class ComputeScope {
   std::array<GLint, 5> image_ = {0, 0, 0, GL_READ_ONLY, GL_R8};  // name, level, layer, access, format
 };
 
+// Puts back the first storage buffer, and the one that is bound without an index.
+class StorageScope {
+ public:
+  explicit StorageScope(Before before = Before::kAsked);
+  ~StorageScope();
+  StorageScope(const StorageScope&) = delete;
+  StorageScope& operator=(const StorageScope&) = delete;
+
+ private:
+  GLint generic_ = 0;
+  GLint buffer_ = 0;
+  GLint64 start_ = 0;
+  GLint64 size_ = 0;  // 0: the whole of it
+};
+
 // Inside, clears reach every value of draw buffers 0 to 2 and depth, in the rectangle that scissor() gives. Puts back
 // masks, scissor and rasterizer discard.
 class ClearScope {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "cl_faults.h"
+#include "cl_imports.h"
 #include "state_scope.h"
 
 namespace quincunx::gl::testing {
@@ -335,6 +336,7 @@ cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info name, std
     const cl_device_type kind = CL_DEVICE_TYPE_GPU;
     return copy_out(&kind, sizeof(kind), room, value, bytes_ret);
   }
+  if (cl_int code = CL_SUCCESS; tells_of_imports(name, room, value, bytes_ret, &code)) return code;
   if (name == CL_DEVICE_HOST_UNIFIED_MEMORY && state().separate_memory) {
     const cl_bool unified = CL_FALSE;
     return copy_out(&unified, sizeof(unified), room, value, bytes_ret);

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Memory of Vulkan's between OpenGL and OpenCL: on a processor lavapipe allocates it, llvmpipe imports it, and PoCL
-// uses the pointer at which it is mapped.
-#include <dirent.h>
-
-#include "cl_interposer.h"
+// Memory of Vulkan's between OpenGL and OpenCL. On a processor lavapipe allocates it, llvmpipe imports it, and PoCL
+// uses the pointer at which it is mapped; a stand-in for PoCL's driver imports fds, too.
 #include "external_memory.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <optional>
+
+#include "cl_imports.h"
+#include "cl_interposer.h"
 #include "interop_fixture.h"
 #include "quincunx/advanced/log.h"
 #include "quincunx/resolve_service.h"
@@ -12,6 +20,8 @@
 
 namespace quincunx::gl::testing {
 namespace {
+
+using Flaw = PretendImports::Flaw;
 
 constexpr Extent kTarget = {96, 80};
 constexpr Extent kOutput = {64, 48};
@@ -25,90 +35,305 @@ int open_fds() {
   return count;
 }
 
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 class External : public InteropTest {
  protected:
-  BridgeSettings settings(Interop interop) const {
-    BridgeSettings made = all_planes(kTarget, kOutput);
-    made.interop = interop;
-    return made;
-  }
-
   // Whether this machine has what it takes; a driver that lies is no excuse.
   void SetUp() override {
     InteropTest::SetUp();
     try {
-      VulkanDevice::open(gl_device_uuid());
+      vulkan_ = VulkanDevice::open(gl_device_uuid());
     } catch (const InteropError& error) {
       QUINCUNX_SKIP(error.what());
     }
   }
 
-  std::unique_ptr<Bridge> bridge(Interop interop) {
-    auto made = Bridge::create(*context_, *device_, settings(interop));
+  // A device as a stand-in has it.
+  void reopen() {
+    auto device = open_device(*context_, "", Interop::kCopy);
+    ASSERT_TRUE(device.ok()) << device.status().message();
+    device_ = std::make_unique<Device>(std::move(device).value());
+  }
+
+  static BridgeSettings settings(Interop interop) {
+    BridgeSettings made = all_planes(kTarget, kOutput);
+    made.interop = interop;
+    return made;
+  }
+
+  std::unique_ptr<Bridge> bridge(const BridgeSettings& settings) {
+    auto made = Bridge::create(*context_, *device_, settings);
     EXPECT_TRUE(made.ok()) << made.status().message();
     return made.ok() ? std::move(made).value() : nullptr;
   }
 
-  // The pictures of frames of changing size, over all slots, each with a viewport of its own.
-  std::vector<Bytes> pictures(Bridge& bridge, int frames) {
-    const ResolvePlan plan =
-        plan_for({}, {.method = Method::kQuincunx, .output_extent = kOutput, .target_extent = kTarget})
-            .value();
-    ResolveService service = ResolveService::create(*device_, plan).value();
-    std::vector<Bytes> made;
-    for (int frame = 0; frame < frames; ++frame) {
-      const int slot = frame % bridge.slots();
-      const Extent render = {kTarget.width - 5 * (frame % 9), 20 + 7 * (frame % 8)};
-      auto targets = bridge.begin_draw(slot, render);
-      EXPECT_TRUE(targets.ok()) << targets.status().message();
-      for (const Plane& plane : planes_of(settings(Interop::kAuto))) {
-        const auto seed = static_cast<std::uint32_t>(10 * frame + static_cast<int>(plane.kind));
-        fill_plane(*targets.value(), plane, finite_texels(plane.format, kTarget, seed));
-      }
-      EXPECT_TRUE(bridge.submit(slot).ok());
-      const auto inputs = bridge.acquire(slot);
-      EXPECT_TRUE(inputs.ok()) << inputs.status().message();
-      const auto presented = bridge.begin_present();
-      EXPECT_TRUE(presented.ok()) << presented.status().message();
-      const FrameReport report = service.dispatch({.colour = inputs->colour,
-                                                   .depth = inputs->depth,
-                                                   .velocity = inputs->velocity,
-                                                   .reactive = inputs->reactive,
-                                                   .render_extent = render},
-                                                  {.presented = presented.value()});
-      EXPECT_TRUE(report.ok()) << report.status.message();
-      const Status status = bridge.present();
-      EXPECT_TRUE(status.ok()) << status.message();
-      const std::uint8_t* pixels = bridge.presented_pixels();
-      made.emplace_back(pixels, pixels + kOutput.area() * 4);
-      Bytes texture(made.back().size());
-      glGetTextureImage(bridge.presented_texture(), 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                        static_cast<GLsizei>(texture.size()), texture.data());
-      EXPECT_TRUE(texture == made.back()) << "OpenGL's picture is the caller's";
-    }
-    return made;
-  }
+  std::vector<Bytes> pictures(const BridgeSettings& settings, int frames);
+
+  std::shared_ptr<VulkanDevice> vulkan_;
 };
 
+// The pictures of frames of changing size, over all slots, each with a viewport of its own.
+std::vector<Bytes> External::pictures(const BridgeSettings& settings, int frames) {
+  const auto bridge = this->bridge(settings);
+  std::vector<Bytes> made;
+  if (bridge == nullptr) return made;
+  EXPECT_EQ(bridge->kind(), settings.interop);
+  const ResolvePlan plan = plan_for({}, {.method = Method::kQuincunx,
+                                         .output_extent = kOutput,
+                                         .target_extent = kTarget,
+                                         .targets = {.placement = settings.targets}})
+                               .value();
+  ResolveService service = ResolveService::create(*device_, plan).value();
+  for (int frame = 0; frame < frames; ++frame) {
+    const int slot = frame % bridge->slots();
+    const Extent render = {kTarget.width - 5 * (frame % 9), 20 + 7 * (frame % 8)};
+    auto targets = bridge->begin_draw(slot, render);
+    EXPECT_TRUE(targets.ok()) << targets.status().message();
+    for (const Plane& plane : planes_of(settings)) {
+      const auto seed = static_cast<std::uint32_t>(10 * frame + static_cast<int>(plane.kind));
+      fill_plane(*targets.value(), plane, finite_texels(plane.format, targets.value()->extent(), seed));
+    }
+    EXPECT_TRUE(bridge->submit(slot).ok());
+    const auto inputs = bridge->acquire(slot);
+    EXPECT_TRUE(inputs.ok()) << inputs.status().message();
+    const auto presented = bridge->begin_present();
+    EXPECT_TRUE(presented.ok()) << presented.status().message();
+    const FrameReport report = service.dispatch({.colour = inputs->colour,
+                                                 .depth = inputs->depth,
+                                                 .velocity = inputs->velocity,
+                                                 .reactive = inputs->reactive,
+                                                 .render_extent = render},
+                                                {.presented = presented.value()});
+    EXPECT_TRUE(report.ok()) << report.status.message();
+    const Status status = bridge->present();
+    EXPECT_TRUE(status.ok()) << status.message();
+    const std::uint8_t* const pixels = bridge->presented_pixels();
+    made.emplace_back(pixels, pixels + kOutput.area() * 4);
+    Bytes texture(made.back().size());
+    glGetTextureImage(bridge->presented_texture(), 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                      static_cast<GLsizei>(texture.size()), texture.data());
+    EXPECT_TRUE(texture == made.back()) << "OpenGL's picture is the caller's";
+  }
+  return made;
+}
+
+constexpr int kFrames = 24;
+
 TEST_F(External, FramesHaveTheBitsOfCopies) {
-  constexpr int kFrames = 24;
-  const std::vector<Bytes> copied = pictures(*bridge(Interop::kCopy), kFrames);
-  const auto external = bridge(Interop::kExternal);
-  ASSERT_NE(external, nullptr);
-  EXPECT_EQ(external->kind(), Interop::kExternal);
-  EXPECT_NE(external->reason().find("memory of Vulkan's"), std::string::npos) << external->reason();
-  const std::vector<Bytes> shared = pictures(*external, kFrames);
-  for (int frame = 0; frame < kFrames; ++frame)
-    EXPECT_TRUE(copied[frame] == shared[frame]) << frame;
+  const std::vector<Bytes> copied = pictures(settings(Interop::kCopy), kFrames);
   EXPECT_FALSE(copied[1] == copied[2]) << "the frames differ";
+  EXPECT_TRUE(pictures(settings(Interop::kExternal), kFrames) == copied);
+}
+
+TEST_F(External, PlacedFramesHaveTheBitsOfCopies) {
+  BridgeSettings placed = settings(Interop::kCopy);
+  placed.targets = Targets::kPlaced;
+  const std::vector<Bytes> copied = pictures(placed, kFrames);
+  placed.interop = Interop::kExternal;
+  EXPECT_TRUE(pictures(placed, kFrames) == copied);
+}
+
+TEST_F(External, EncodedFramesHaveTheBitsOfCopies) {
+  BridgeSettings encoded = settings(Interop::kCopy);
+  encoded.colour = PixelFormat::kRGBA8;
+  auto bridges = std::array{bridge(encoded), std::unique_ptr<Bridge>()};
+  encoded.interop = Interop::kExternal;
+  bridges[1] = bridge(encoded);
+  std::array<Bytes, 2> seen;
+  for (std::size_t i = 0; i < bridges.size(); ++i) {
+    auto targets = bridges[i]->begin_draw(0, kTarget);
+    ASSERT_TRUE(targets.ok());
+    for (const Plane& plane : planes_of(encoded))
+      fill_plane(*targets.value(), plane, finite_texels(plane.format, kTarget, 5));
+    ASSERT_TRUE(bridges[i]->submit(0).ok());
+    seen[i] = download(bridges[i]->acquire(0).value().colour, kTarget);
+  }
+  EXPECT_TRUE(seen[0] == seen[1]);
 }
 
 TEST_F(External, NothingIsLeftOpen) {
-  bridge(Interop::kExternal).reset();  // drivers keep some files from their first use on
+  bridge(settings(Interop::kExternal)).reset();  // drivers keep some files from their first use on
   const int before = open_fds();
   for (int i = 0; i < 3; ++i)
-    bridge(Interop::kExternal).reset();
+    bridge(settings(Interop::kExternal)).reset();
   EXPECT_EQ(open_fds(), before);
+}
+
+// A CPU's copies are in place already.
+TEST_F(External, AutoTakesItWhereItGains) {
+  BridgeSettings any = settings(Interop::kAuto);
+  EXPECT_EQ(bridge(any)->kind(), device_->info().imports_opaque_fds ? Interop::kExternal : Interop::kCopy);
+}
+
+// The same by fds, on a driver of its own memory.
+class ExternalFds : public External {
+ protected:
+  void SetUp() override {
+    External::SetUp();
+    if (device_ != nullptr && device_->info().kind != DeviceKind::kCpu)
+      QUINCUNX_SKIP("the stand-in is a processor's OpenCL");
+  }
+
+  // What an import by a driver of this flaw says.
+  Status refusal(Flaw flaw, ExternalMemory external) {
+    const PretendImports driver(flaw);
+    reopen();
+    auto imported = device_->import_memory(external);
+    EXPECT_FALSE(imported.ok());
+    return imported.status();
+  }
+};
+
+TEST_F(ExternalFds, FramesHaveTheBitsOfCopies) {
+  const std::vector<Bytes> copied = pictures(settings(Interop::kCopy), kFrames);
+  const PretendSeparateMemory separate;
+  const PretendImports driver;
+  reopen();
+  ASSERT_TRUE(device_->info().imports_opaque_fds);
+  EXPECT_EQ(bridge(settings(Interop::kAuto))->kind(), Interop::kExternal);
+  EXPECT_TRUE(pictures(settings(Interop::kExternal), kFrames) == copied);
+  const int before = open_fds();
+  bridge(settings(Interop::kExternal)).reset();
+  EXPECT_EQ(open_fds(), before);
+}
+
+// A driver that cannot be trusted ends in one sentence, and frames are copied.
+TEST_F(ExternalFds, ADriverThatLiesMeansCopying) {
+  const std::array flaws = {std::pair{Flaw::kWrongBytes, "other bytes than OpenGL wrote"},
+                            std::pair{Flaw::kRefuses, "clCreateBufferWithProperties"},
+                            std::pair{Flaw::kWrongUuid, "OpenGL draws on the device"},
+                            std::pair{Flaw::kNoFunctions, "has no clEnqueueAcquireExternalMemObjectsKHR"}};
+  const PretendSeparateMemory separate;
+  for (const auto& [flaw, clue] : flaws) {
+    const PretendImports driver(flaw);
+    reopen();
+    const int before = open_fds();
+    const auto refused = Bridge::create(*context_, *device_, settings(Interop::kExternal));
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.status().code(), StatusCode::kUnsupported);
+    EXPECT_TRUE(contains(refused.status().message(), clue)) << refused.status().message();
+    EXPECT_TRUE(contains(refused.status().message(), "use 'copy' or 'auto'"));
+    EXPECT_EQ(refused.status().message().find('\n'), std::string::npos) << refused.status().message();
+    EXPECT_EQ(open_fds(), before) << clue;
+    const auto fallen_back = bridge(settings(Interop::kAuto));
+    EXPECT_EQ(fallen_back->kind(), Interop::kCopy);
+    EXPECT_TRUE(contains(fallen_back->reason(), clue)) << fallen_back->reason();
+  }
+}
+
+TEST_F(ExternalFds, BadImportsAreNamed) {
+  const auto memory = vulkan_->allocate(4096, VulkanDevice::Place::kDevice);
+  const Fd good = memory->fd();
+  const int closed = fcntl(good.get(), F_DUPFD_CLOEXEC, 1000);  // a number that nobody takes meanwhile
+  close(closed);
+  const Fd foreign(open("/proc/self/exe", O_RDONLY | O_CLOEXEC));
+  const int before = open_fds();
+  const auto expect = [&](const ExternalMemory& external, StatusCode code, const std::string& clue) {
+    const Status status = refusal(Flaw::kNone, external);
+    EXPECT_EQ(status.code(), code) << status.message();
+    EXPECT_TRUE(contains(status.message(), clue)) << status.message();
+  };
+  using enum StatusCode;
+  expect({.fd = good.get()}, kInvalidArgument, "bytes is 0");
+  expect({.fd = closed, .bytes = 4096}, kInvalidArgument, "no open file descriptor");
+  expect({.fd = -1, .bytes = 4096}, kInvalidArgument, "fd is -1");
+  expect({.fd = foreign.get(), .bytes = 4096}, kDeviceFailure, "clCreateBufferWithProperties");
+  expect({.fd = good.get(), .bytes = 1 << 24}, kDeviceFailure, "import_memory of 16777216 bytes");
+  expect({.handle = MemoryHandle::kDmaBuf, .fd = good.get(), .bytes = 4096}, kUnsupported,
+         "does not offer cl_khr_external_memory_dma_buf");
+  expect({.fd = good.get(), .bytes = 4096, .device = {1}}, kInvalidArgument,
+         "import it where it was allocated");
+  expect({.handle = MemoryHandle::kMapped, .bytes = 4096}, kInvalidArgument, "mapped is 0x0");
+  EXPECT_TRUE(
+      contains(refusal(Flaw::kRefuses, {.fd = good.get(), .bytes = 4096}).message(), "CL_INVALID_VALUE"));
+  EXPECT_EQ(open_fds(), before);
+  EXPECT_TRUE(fcntl(good.get(), F_GETFD) >= 0) << "the caller's stays open";
+}
+
+TEST_F(ExternalFds, MemoryChangesSidesOnce) {
+  const auto memory = vulkan_->allocate(4096, VulkanDevice::Place::kDevice);
+  const Fd fd = memory->fd();
+  const PretendImports driver;
+  reopen();
+  SharedMemory shared = device_->import_memory({.fd = fd.get(), .bytes = 4096}).value();
+  EXPECT_FALSE(shared.acquired());
+  EXPECT_TRUE(shared.release().ok()) << "it is the other's already";
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_TRUE(shared.acquire().ok());
+    EXPECT_TRUE(shared.acquire().ok()) << "it is OpenCL's already";
+    EXPECT_EQ(driver.acquired(), 1);
+    cl_event done = nullptr;
+    EXPECT_TRUE(shared.release(&done).ok());
+    ASSERT_NE(done, nullptr);
+    EXPECT_EQ(clReleaseEvent(done), CL_SUCCESS);
+    EXPECT_EQ(driver.acquired(), 0);
+  }
+}
+
+// Semaphores in and out of a dispatch.
+class ExternalSemaphores : public ExternalFds {
+ protected:
+  static bool raised(const Fd& fd, int wait_ms) {
+    pollfd ready = {.fd = fd.get(), .events = POLLIN, .revents = 0};
+    return poll(&ready, 1, wait_ms) == 1;
+  }
+  static void raise(const Fd& fd) {
+    const std::uint64_t one = 1;
+    ASSERT_EQ(write(fd.get(), &one, sizeof(one)), static_cast<ssize_t>(sizeof(one)));
+  }
+};
+
+TEST_F(ExternalSemaphores, AFrameWaitsForThemAndSignalsItsEnd) {
+  const PretendImports driver;
+  reopen();
+  const Fd drawn_fd(eventfd(0, EFD_CLOEXEC)), resolved_fd(eventfd(0, EFD_CLOEXEC));
+  const int before = open_fds();
+  {
+    Semaphore drawn = device_->import_semaphore(drawn_fd.get()).value();
+    Semaphore resolved = device_->import_semaphore(resolved_fd.get()).value();
+    const ResolvePlan plan =
+        plan_for({}, {.method = Method::kPoint, .output_extent = kOutput, .target_extent = kOutput}).value();
+    ResolveService service = ResolveService::create(*device_, plan).value();
+    const Image colour = device_->allocate(kOutput, plan.settings.colour).value();
+    const Image picture = device_->allocate(kOutput, PixelFormat::kRGBA8).value();
+    const FrameInputs inputs = {.colour = colour.view(), .render_extent = kOutput};
+    Semaphore* const waits = &drawn;
+    Semaphore* const signals = &resolved;
+    const FrameSync sync = {.wait_semaphores = {&waits, 1}, .signal_semaphores = {&signals, 1}};
+    for (int frame = 0; frame < 3; ++frame) {
+      const FrameReport report = service.dispatch(inputs, {.presented = picture.view()}, sync);
+      ASSERT_TRUE(report.ok()) << report.status.message();
+      EXPECT_FALSE(raised(resolved_fd, 50)) << "the frame waits";
+      raise(drawn_fd);
+      EXPECT_TRUE(raised(resolved_fd, 10'000)) << "its end is signalled";
+      std::uint64_t count = 0;
+      EXPECT_EQ(read(resolved_fd.get(), &count, sizeof(count)), static_cast<ssize_t>(sizeof(count)));
+      EXPECT_EQ(count, 1u);
+    }
+    Semaphore* const none = nullptr;
+    EXPECT_EQ(service.dispatch(inputs, {.presented = picture.view()}, {.wait_semaphores = {&none, 1}})
+                  .status.message(),
+              "wait_semaphores[0] is null; leave it out");
+    reopen();
+    Semaphore others = device_->import_semaphore(drawn_fd.get()).value();
+    Semaphore* const foreign = &others;
+    EXPECT_EQ(service.dispatch(inputs, {.presented = picture.view()}, {.signal_semaphores = {&foreign, 1}})
+                  .status.message(),
+              "signal_semaphores[0] is of another device; import it by the service's own");
+    EXPECT_FALSE(raised(resolved_fd, 0)) << "a refused frame signals nothing";
+  }
+  EXPECT_EQ(open_fds(), before);
+}
+
+TEST_F(ExternalSemaphores, BadOnesAreNamed) {
+  EXPECT_TRUE(contains(device_->import_semaphore(0).error(), "cl_khr_external_semaphore_opaque_fd"));
+  const PretendImports driver;
+  reopen();
+  EXPECT_EQ(device_->import_semaphore(-1).error(),
+            "import_semaphore: fd is -1, which is no open file descriptor");
 }
 
 }  // namespace
