@@ -288,20 +288,22 @@ Status RenderSession::score_frame() {
 }
 
 Status RenderSession::write_frame(std::int64_t index) {
-  const std::uint8_t* pixels = source_->bridge().presented_pixels();
   const FrameView& view = source_->oldest().view;
   if (sheet_ && std::binary_search(sheet_frames_.begin(), sheet_frames_.end(), static_cast<int>(index))) {
     const float ratio = static_cast<float>(view.render.width) / static_cast<float>(options_.output.width);
     const tools::ContactSheetCaption caption = {
         fmt::format("frame {:04}", index),
         fmt::format("{:.2f} · {}×{}", ratio, view.render.width, view.render.height), std::min(ratio, 1.0f)};
-    if (Status status = sheet_->add(options_.output, pixels, caption); !status.ok()) return status;
+    if (Status status = sheet_->add(options_.output, source_->bridge().presented_pixels(), caption);
+        !status.ok())
+      return status;
   }
   if (!pattern_) return {};
   const std::string path = pattern_->expand(index);
   if (index == 0 || index + 1 == options_.frames) files_.push_back(path);
   const Extent output = options_.output;
   if (tools::has_8_bits(format_of(*pattern_))) {
+    const std::uint8_t* const pixels = source_->bridge().presented_pixels();
     std::vector<std::uint8_t> copy(pixels, pixels + output.area() * 4);
     return writer_.push(
         [path, output, copy = std::move(copy)] { return tools::write_picture(path, output, copy.data()); });
