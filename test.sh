@@ -30,8 +30,8 @@ say "Built in $((SECONDS - started)) s."
 
 left_out=()
 if ! command -v oclgrind >/dev/null; then
-  say "This Debian has no oclgrind, so kernel_tests_oclgrind (memory checks of the kernels) is left out."
-  left_out+=(kernel_tests_oclgrind)
+  say "This Debian has no oclgrind, so kernel_tests_oclgrind_* (memory checks of the kernels) is left out."
+  left_out+=('kernel_tests_oclgrind_[18]')
 fi
 if [[ ! -x /usr/sbin/slurmd || ! -x /usr/sbin/munged ]]; then
   say "Slurm is not installed, so farm_tests (the script for render farms) is left out."

@@ -9,12 +9,12 @@ if(NOT OCLGRIND)
 endif()
 
 # Without optimisation: optimised, oclgrind stops at hints about memory that its compiler puts in where it inlines, and
-# computes the minimum of int8 wrongly. The macros keep headers from inlining. The program cache would hold binaries of
-# another device.
+# computes the minimum of int8 wrongly. It knows no prefetches. The macros keep headers from inlining. The program cache
+# would hold binaries of another device.
 execute_process(
   COMMAND ${CMAKE_COMMAND} -E env QUINCUNX_CACHE_DIR= ${OCLGRIND} --check-api --data-races
-          --build-options "-cl-opt-disable -D inline=inline -D IN_REGISTERS=" ${TESTS} --gtest_brief=1
-          --gtest_filter=${FILTER}
+          --build-options "-cl-opt-disable -D inline=inline -D IN_REGISTERS= -D __builtin_prefetch(...)="
+          ${TESTS} --gtest_brief=1 --gtest_filter=${FILTER}
   RESULT_VARIABLE result OUTPUT_VARIABLE log ERROR_VARIABLE log)
 string(LENGTH "${log}" length)
 if(length GREATER 8000)

@@ -29,8 +29,8 @@ class BuildError : public std::runtime_error {
 };
 
 // Builds or loads the kernel `name` of the embedded source `name`.cl, with `options` ("-D WEIGHT=1 -D ..."), the
-// device's LANES and the options common to all kernels. The kernel object is the caller's own. Thread-safe. Throws cl::Error; a build failure
-// throws BuildError.
+// device's LANES and the options common to all kernels. The kernel object is the caller's own. Thread-safe. Throws
+// cl::Error; a build failure throws BuildError.
 cl::Kernel build_kernel(const Device::Impl& device, const std::string& name, const std::string& options);
 
 // Returns the whole source of kernel `name` with its includes expanded, each once, as build_kernel compiles it. Throws
