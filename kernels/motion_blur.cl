@@ -77,7 +77,7 @@ static inline Surfaces surfaces_at(const Frame* frame, VELOCITY_TEXELS velocity,
 
 // Whether one of the pixels that count is -1.
 static inline bool any_pixel(int4 pixels) {
-  return ON_CPU ? any(pixels) : pixels.s0 != 0;
+  return LANES == 8 ? any(pixels) : pixels.s0 != 0;
 }
 
 // Whether surfaces move as a streak says, to half a pixel and a quarter of its length.
@@ -149,7 +149,7 @@ static inline Places places_seen(const Frame* frame, TileBlur blur, VELOCITY_TEX
 
 static inline void add_colours(FourPixels* sum, RESOLVED_TEXELS source, TexelLayout layout, Places places) {
   sum->p0 += load_resolved(source, layout, places.x.s0, places.y.s0);
-  if (!ON_CPU) return;
+  if (LANES == 1) return;
   sum->p1 += load_resolved(source, layout, places.x.s1, places.y.s1);
   sum->p2 += load_resolved(source, layout, places.x.s2, places.y.s2);
   sum->p3 += load_resolved(source, layout, places.x.s3, places.y.s3);
@@ -196,7 +196,7 @@ __kernel void motion_blur(const MotionParams params, __global const AxisTap* axe
     if (blur.kind == kTileCopy) {
       FourPixels colour;
       colour.p0 = load_resolved(source, params.source, x, y);
-      if (ON_CPU) {
+      if (LANES == 8) {
         colour.p1 = load_resolved(source, params.source, min(x + 1, end - 1), y);
         colour.p2 = load_resolved(source, params.source, min(x + 2, end - 1), y);
         colour.p3 = load_resolved(source, params.source, min(x + 3, end - 1), y);

@@ -197,7 +197,7 @@ __kernel void present(const PresentParams params, RESOLVED_TEXELS source, __glob
   const float given = *exposure;
   const float factor = params.exposure * (given > 0.0f && given <= FLT_MAX ? given : 1.0f);
   int x = item.first;
-#if ON_CPU
+#if LANES == 8
   int16 largest = 0;
   for (; x + kPresentBlock <= item.end; x += kPresentBlock) {
     const float16 a = load_resolved4(source, params.source, x, y);
@@ -215,7 +215,7 @@ __kernel void present(const PresentParams params, RESOLVED_TEXELS source, __glob
   // The rest of the row or, which is rare, all of it once more: pixel by pixel, four of them in each register. Where
   // the device is no CPU all of it, one by one.
   uint met_count = 0;
-  for (; x < item.end; x += ON_CPU ? kBlock : item.step) {
+  for (; x < item.end; x += LANES == 8 ? kBlock : item.step) {
     uint met = 0;
     const int count = pixels_from(item, x), last = x + count - 1;
     const float4 p0 = load_careful(source, params.source, x, y, 1, &met);

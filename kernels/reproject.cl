@@ -174,7 +174,7 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
 #if MOTION_EDGE
     const float4 edge = motion_edges_at(&params, velocity0, x, y, velocity);
     const float4 previous_edge = previous_motion_edges(&params, previous_reprojection, nearest_x, nearest_y);
-    const float4 kept = 1.0f - edge_rejection((float8)(previous_edge, previous_edge)).lo;
+    const float4 kept = 1.0f - edge_rejection4(previous_edge);
     found.trust *= select((float4)(1.0f), kept, before.most > limit);
     found.motion_edge = select(edge, -previous_edge, previous_edge > edge);
 #else

@@ -45,7 +45,7 @@
 #endif
 
 static inline int4 nearest_of(__global const AxisTap* columns) {
-  if (!ON_CPU) return columns[0].nearest;
+  if (LANES == 1) return columns[0].nearest;
   return (int4)(columns[0].nearest, columns[1].nearest, columns[2].nearest, columns[3].nearest);
 }
 
@@ -58,7 +58,7 @@ __attribute__((always_inline)) static inline void sample_frame(bool careful, COL
   sample_four(careful, colour, frame.colour, frame.width, frame.height, columns, row, mean, non_finite);
 #else
   mean->p0 = load_colour(colour, frame.colour, columns[0].nearest, row.nearest);
-  if (ON_CPU) {
+  if (LANES == 8) {
     mean->p1 = load_colour(colour, frame.colour, columns[1].nearest, row.nearest);
     mean->p2 = load_colour(colour, frame.colour, columns[2].nearest, row.nearest);
     mean->p3 = load_colour(colour, frame.colour, columns[3].nearest, row.nearest);

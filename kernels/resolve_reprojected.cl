@@ -49,22 +49,17 @@ static inline Row row_of(const ReprojectedParams* params, __global const int* po
 }
 
 #if MOTION
-// Returns the motion of eight pixels, from the samples that are nearest to them.
-static inline PixelMotion motion_of(const ReprojectedParams* params, __global const float* reprojection, int8 x,
+// Returns the motion of pixels, from the samples that are nearest to them.
+static inline PixelMotion motion_of(const ReprojectedParams* params, __global const float* reprojection, LaneInt x,
                                     int y) {
-  PixelMotion motion;
-  __global const float* row = reprojection + 4 * row_index(params->reprojection, y);
-  const float4 m0 = vload4(x.s0, row), m1 = vload4(x.s1, row), m2 = vload4(x.s2, row), m3 = vload4(x.s3, row);
-  const float4 m4 = vload4(x.s4, row), m5 = vload4(x.s5, row), m6 = vload4(x.s6, row), m7 = vload4(x.s7, row);
-  motion.x = (float8)(m0.x, m1.x, m2.x, m3.x, m4.x, m5.x, m6.x, m7.x);
-  motion.y = (float8)(m0.y, m1.y, m2.y, m3.y, m4.y, m5.y, m6.y, m7.y);
-  motion.trust = (float8)(m0.z, m1.z, m2.z, m3.z, m4.z, m5.z, m6.z, m7.z);
+  const LaneFloat4 own = gather4(reprojection + 4 * row_index(params->reprojection, y), x);
+  const PixelMotion motion = {own.x, own.y, own.z};
   return motion;
 }
 #elif REACTIVE
-// 1 - reactive of eight samples of a row.
-static inline float8 trust_of(REACTIVE_TEXELS reactive, TexelLayout layout, int8 x, int y) {
-  return 1.0f - (float8)(load_reactive4(reactive, layout, x.lo, y), load_reactive4(reactive, layout, x.hi, y));
+// 1 - reactive of samples of a row.
+static inline LaneFloat trust_of(REACTIVE_TEXELS reactive, TexelLayout layout, LaneInt x, int y) {
+  return 1.0f - load_reactive_lanes(reactive, layout, x, y);
 }
 #endif
 
@@ -81,25 +76,25 @@ static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEX
                                      float fraction1_x, float fraction1_y, float found_trust, bool* met) {
   const bool lost = (as_int(found_trust) & 0x7fffffff) >= NON_FINITE_BITS;
   float trust = lost ? 0.0f : found_trust;
-  const float8 now_x = (float8)(fraction0_x), now_y = (float8)(fraction0_y);
-  const float8 before_x = (float8)(fraction1_x), before_y = (float8)(fraction1_y);
+  const LaneFloat now_x = (LaneFloat)(fraction0_x), now_y = (LaneFloat)(fraction0_y);
+  const LaneFloat before_x = (LaneFloat)(fraction1_x), before_y = (LaneFloat)(fraction1_y);
   const SourceFrame* frame0 = &params->frame0;
   const SourceFrame* frame1 = &params->frame1;
   FourPairs samples = {careful_pair(colour0, frame0, x0, y0), careful_pair(colour0, frame0, x0, y0 + 1),
                        careful_pair(colour1, frame1, x1, y1), careful_pair(colour1, frame1, x1, y1 + 1)};
-  Weights weights = weights_of(params, now_x, now_y, before_x, before_y, (float8)(trust));
-  const float left = weights.before_x0.s0, right = weights.before_x1.s0;
-  const bool met_before = counts_non_finite(samples.before0, left, right, weights.before_y0.s0) ||
-                          counts_non_finite(samples.before1, left, right, weights.before_y1.s0);
-  if (met_before) weights = weights_of(params, now_x, now_y, before_x, before_y, (float8)(0.0f));
-  *met = lost || met_before ||
-         counts_non_finite(samples.now0, weights.now_x0.s0, weights.now_x1.s0, weights.now_y0.s0) ||
-         counts_non_finite(samples.now1, weights.now_x0.s0, weights.now_x1.s0, weights.now_y1.s0);
+  Weights weights = weights_of(params, now_x, now_y, before_x, before_y, (LaneFloat)(trust));
+  const float left = FIRST_LANE(weights.before_x0), right = FIRST_LANE(weights.before_x1);
+  const float above = FIRST_LANE(weights.before_y0), below = FIRST_LANE(weights.before_y1);
+  const bool met_before = counts_non_finite(samples.before0, left, right, above) ||
+                          counts_non_finite(samples.before1, left, right, below);
+  if (met_before) weights = weights_of(params, now_x, now_y, before_x, before_y, (LaneFloat)(0.0f));
+  const PixelWeights own = PIXEL_WEIGHTS(weights, s0);
+  *met = lost || met_before || counts_non_finite(samples.now0, own.now_x.s0, own.now_x.s4, own.now_y0) ||
+         counts_non_finite(samples.now1, own.now_x.s0, own.now_x.s4, own.now_y1);
   samples.now0 = sanitise8(samples.now0);
   samples.now1 = sanitise8(samples.now1);
   samples.before0 = sanitise8(samples.before0);
   samples.before1 = sanitise8(samples.before1);
-  const PixelWeights own = PIXEL_WEIGHTS(weights, s0);
   const int8 bits = bits_of(samples);
   return any_at_least_two(bits.lo | bits.hi) ? blend_bright(samples, own, BRIGHT) : blend_samples(samples, own);
 }
@@ -107,9 +102,9 @@ static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEX
 // Pixel i of a block the fast way: into pixel_<i>.
 #define RESOLVE(i)                                                                                                     \
   const FourPairs samples_##i = {                                                                                      \
-      load_colour_pair(colour0, upper, now_x.texel.i), load_colour_pair(colour0, lower, now_x.texel.i),                \
-      load_colour_pair_at(colour1, upper1, before.i, before_x.texel.i, before_y.texel.i),                              \
-      load_colour_pair_at(colour1, lower1, before.i, before_x.texel.i, before_y.texel.i + 1)};                         \
+      load_colour_pair(colour0, upper, LANE(now_x.texel, i)), load_colour_pair(colour0, lower, LANE(now_x.texel, i)),  \
+      load_colour_pair_at(colour1, upper1, LANE(before, i), LANE(before_x.texel, i), LANE(before_y.texel, i)),         \
+      load_colour_pair_at(colour1, lower1, LANE(before, i), LANE(before_x.texel, i), LANE(before_y.texel, i) + 1)};    \
   const float4 pixel_##i = blend_samples(samples_##i, PIXEL_WEIGHTS(weights, i));                                      \
   bits |= bits_of(samples_##i)
 
@@ -117,9 +112,10 @@ static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEX
 #define RESOLVE_CAREFULLY(i, n)                                                                                        \
   if (n < count) {                                                                                                     \
     bool met = false;                                                                                                  \
-    const float4 pixel = resolve_careful(&params, colour0, colour1, now_x.texel.i, now_y.texel.i, before_x.texel.i,    \
-                                         before_y.texel.i, now_x.fraction.i, now_y.fraction.i, before_x.fraction.i,    \
-                                         before_y.fraction.i, motion.trust.i, &met);                                   \
+    const float4 pixel =                                                                                               \
+        resolve_careful(&params, colour0, colour1, LANE(now_x.texel, i), LANE(now_y.texel, i), LANE(before_x.texel, i),\
+                        LANE(before_y.texel, i), LANE(now_x.fraction, i), LANE(now_y.fraction, i),                     \
+                        LANE(before_x.fraction, i), LANE(before_y.fraction, i), LANE(motion.trust, i), &met);          \
     store_output(output, params.output, x + n, y, pixel);                                                              \
     met_count += met;                                                                                                  \
   }
@@ -136,11 +132,11 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
   const SourceFrame frame1 = params.frame1;
   const bool pairs = min(min(frame0.width, frame0.height), min(frame1.width, frame1.height)) > 1;
   const Row row = row_of(&params, positions0, positions1, y);
-  const Positions row0 = {(int8)(row.texel0), (float8)(row.fraction0)};
-  const Positions row1 = {(int8)(row.texel1), (float8)(row.fraction1)};
-  const Positions now_y = moved_positions(row0, (float8)(0.0f), frame0.height - 1);
-  COLOUR_ROW upper = colour_row(colour0, frame0.colour, now_y.texel.s0);
-  COLOUR_ROW lower = colour_row(colour0, frame0.colour, min(now_y.texel.s0 + 1, frame0.height - 1));
+  const Positions row0 = {(LaneInt)(row.texel0), (LaneFloat)(row.fraction0)};
+  const Positions row1 = {(LaneInt)(row.texel1), (LaneFloat)(row.fraction1)};
+  const Positions now_y = moved_positions(row0, (LaneFloat)(0.0f), frame0.height - 1);
+  COLOUR_ROW upper = colour_row(colour0, frame0.colour, FIRST_LANE(now_y.texel));
+  COLOUR_ROW lower = colour_row(colour0, frame0.colour, min(FIRST_LANE(now_y.texel) + 1, frame0.height - 1));
   COLOUR_ROW upper1 = colour_row(colour1, frame1.colour, 0);
   COLOUR_ROW lower1 = colour_row(colour1, frame1.colour, 1);
   uint met_count = 0;
@@ -148,16 +144,17 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
     const int count = pixels_from(item, x);
     const Positions column0 = load_positions(positions0, params.columns, x);
     const Positions column1 = load_positions(positions1, params.columns, x);
-    const Positions now_x = moved_positions(column0, (float8)(0.0f), frame0.width - 1);
+    const Positions now_x = moved_positions(column0, (LaneFloat)(0.0f), frame0.width - 1);
 #if MOTION
-    const PixelMotion motion = motion_of(&params, reprojection, nearest_samples(now_x), nearest_samples(now_y).s0);
+    const PixelMotion motion =
+        motion_of(&params, reprojection, nearest_samples(now_x), FIRST_LANE(nearest_samples(now_y)));
 #else
-    PixelMotion motion = {(float8)(0.0f), (float8)(0.0f), (float8)(1.0f)};
+    PixelMotion motion = {(LaneFloat)(0.0f), (LaneFloat)(0.0f), (LaneFloat)(1.0f)};
 #if REACTIVE
-    const Positions still_x = moved_positions(column1, (float8)(0.0f), frame1.width - 1);
-    const Positions still_y = moved_positions(row1, (float8)(0.0f), frame1.height - 1);
-    motion.trust = trust_of(reactive0, frame0.reactive, nearest_samples(now_x), nearest_samples(now_y).s0) *
-                   trust_of(reactive1, frame1.reactive, nearest_samples(still_x), nearest_samples(still_y).s0);
+    const Positions still_x = moved_positions(column1, (LaneFloat)(0.0f), frame1.width - 1);
+    const Positions still_y = moved_positions(row1, (LaneFloat)(0.0f), frame1.height - 1);
+    motion.trust = trust_of(reactive0, frame0.reactive, nearest_samples(now_x), FIRST_LANE(nearest_samples(now_y))) *
+                   trust_of(reactive1, frame1.reactive, nearest_samples(still_x), FIRST_LANE(nearest_samples(still_y)));
 #endif
 #endif
     const Positions before_x = moved_positions(column1, motion.x, frame1.width - 1);
@@ -165,10 +162,10 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
     if (pairs) {
       const Weights weights = weights_of(&params, now_x.fraction, now_y.fraction, before_x.fraction, before_y.fraction,
                                          motion.trust);
-      const int8 before = before_y.texel * frame1.colour.pitch + before_x.texel;
-      int8 bits = as_int8(motion.trust);
+      const LaneInt before = before_y.texel * frame1.colour.pitch + before_x.texel;
+      int8 bits = (int8)(as_lane_int(motion.trust));
       RESOLVE(s0);
-#if ON_CPU
+#if LANES == 8
       RESOLVE(s1);
       RESOLVE(s2);
       RESOLVE(s3);
@@ -191,6 +188,7 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
 #endif
     }
     RESOLVE_CAREFULLY(s0, 0)
+#if LANES == 8
     RESOLVE_CAREFULLY(s1, 1)
     RESOLVE_CAREFULLY(s2, 2)
     RESOLVE_CAREFULLY(s3, 3)
@@ -198,6 +196,7 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
     RESOLVE_CAREFULLY(s5, 5)
     RESOLVE_CAREFULLY(s6, 6)
     RESOLVE_CAREFULLY(s7, 7)
+#endif
   }
   if (met_count) atomic_add(non_finite + params.counter, met_count);
 }

@@ -43,7 +43,7 @@
 #define INNER_Y params->inner_y
 #endif
 
-#if ON_CPU
+#if LANES == 8
 // Columns of a run of output pixels, each the weighted mean of its rows and, for CLAMP, the range of its inner rows
 // and, in the end, of the INNER_X columns from there on.
 typedef struct Columns {
@@ -185,7 +185,7 @@ __kernel void scale_filter(const FilterParams filter, __global const FilterSpan*
   const FilterSpan row = spans[params->row_axis + y];
   __global const float* column_weights = (__global const float*)(spans + params->row_axis + params->output_height);
   __global const float* row_weights = column_weights + params->row_axis * TAPS_X + y * TAPS_Y;
-#if ON_CPU
+#if LANES == 8
   int4 largest = params->run > 0 ? 0 : NON_FINITE_BITS;
   Columns columns;
   for (int start = item.first; start < item.end && params->run > 0; start += params->run) {

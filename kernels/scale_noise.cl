@@ -30,7 +30,7 @@ __kernel void scale_noise(const NoiseParams params, __global const AxisTap* axes
     // The axis table is padded to whole blocks.
     FourPixels colour;
     colour.p0 = load_colour(source, scale.source, axes[x].nearest, row);
-    if (ON_CPU) {
+    if (LANES == 8) {
       colour.p1 = load_colour(source, scale.source, axes[x + 1].nearest, row);
       colour.p2 = load_colour(source, scale.source, axes[x + 2].nearest, row);
       colour.p3 = load_colour(source, scale.source, axes[x + 3].nearest, row);

@@ -37,7 +37,7 @@ __kernel void scale_noise_offset(const NoiseParams params, __global const AxisTa
     // The axis table is padded to whole blocks.
     const AxisTap t0 = axes[x];
     AxisTap t1 = t0, t2 = t0, t3 = t0;
-    if (ON_CPU) {
+    if (LANES == 8) {
       t1 = axes[x + 1];
       t2 = axes[x + 2];
       t3 = axes[x + 3];
@@ -50,7 +50,7 @@ __kernel void scale_noise_offset(const NoiseParams params, __global const AxisTa
                                 scale.source_height - 1);
     FourPixels colour;
     colour.p0 = load_colour(source, scale.source, column.s0, line.s0);
-    if (ON_CPU) {
+    if (LANES == 8) {
       colour.p1 = load_colour(source, scale.source, column.s1, line.s1);
       colour.p2 = load_colour(source, scale.source, column.s2, line.s2);
       colour.p3 = load_colour(source, scale.source, column.s3, line.s3);

@@ -69,7 +69,7 @@ __kernel void sharpen(const SharpenParams params, RESOLVED_TEXELS source, OUTPUT
   if (item.first >= item.end || y >= params.height) return;
 
   int x = item.first;
-#if ON_CPU
+#if LANES == 8
   const int above = max(y - 1, 0), below = min(y + 1, params.height - 1);
   const TexelLayout layout = params.source;
   int16 largest = 0;

@@ -14,6 +14,7 @@ foreach(row IN LISTS rows)
     execute_process(
       COMMAND "${CLANG}" -x cl -cl-std=CL1.2 -target spir64-unknown-unknown -Xclang -finclude-default-header
               -fsyntax-only -Wall -Wextra -Wshadow -Wundef -Werror -Wno-unused-function -Wno-unused-parameter
+              -Wno-bitwise-instead-of-logical
               -I "${ROOT}/include" -D LANES=${lanes} ${options} "${FILE}"
       RESULT_VARIABLE result ERROR_VARIABLE log)
     if(NOT result EQUAL 0)

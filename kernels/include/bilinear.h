@@ -48,7 +48,7 @@ __attribute__((always_inline)) static inline void sample_four(bool careful, COLO
     bool met0, met1, met2, met3;
     mean->p0 = sample_careful(texels, layout, width, height, columns[0], row, &met0);
     *non_finite = (uint)met0;
-    if (!ON_CPU) return;
+    if (LANES == 1) return;
     mean->p1 = sample_careful(texels, layout, width, height, columns[1], row, &met1);
     mean->p2 = sample_careful(texels, layout, width, height, columns[2], row, &met2);
     mean->p3 = sample_careful(texels, layout, width, height, columns[3], row, &met3);
@@ -57,7 +57,7 @@ __attribute__((always_inline)) static inline void sample_four(bool careful, COLO
     COLOUR_ROW upper = colour_row(texels, layout, row.base);
     COLOUR_ROW lower = colour_row(texels, layout, min(row.base + 1, height - 1));
     mean->p0 = sample_finite(texels, upper, lower, columns[0], row);
-    if (!ON_CPU) return;
+    if (LANES == 1) return;
     mean->p1 = sample_finite(texels, upper, lower, columns[1], row);
     mean->p2 = sample_finite(texels, upper, lower, columns[2], row);
     mean->p3 = sample_finite(texels, upper, lower, columns[3], row);

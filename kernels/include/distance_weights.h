@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Weights of the samples of two frames by their distance, for resolve_reprojected: eight output pixels at a time.
+// Weights of the samples of two frames by their distance, for resolve_reprojected.
 #pragma once
 
 #include "arithmetic.h"
 #include "bits.h"
 #include "resolve_params.h"
 
-// Reprojection of eight pixels: pixels of the previous frame, and the trust of what lies there.
+// Reprojection of pixels: pixels of the previous frame, and the trust of what lies there.
 typedef struct PixelMotion {
-  float8 x, y, trust;
+  LaneFloat x, y, trust;
 } PixelMotion;
 
 // Weights of the 2x2 samples of both frames: a sample's is the product of its column's and its row's. All eight of a
 // pixel add up to 1.
 typedef struct Weights {
-  float8 now_x0, now_x1, now_y0, now_y1;
-  float8 before_x0, before_x1, before_y0, before_y1;
+  LaneFloat now_x0, now_x1, now_y0, now_y1;
+  LaneFloat before_x0, before_x1, before_y0, before_y1;
 } Weights;
 
 // The same of one pixel, ready for pairs of samples.
@@ -24,10 +24,10 @@ typedef struct PixelWeights {
   float now_y0, now_y1, before_y0, before_y1;
 } PixelWeights;
 
-#define PIXEL_WEIGHTS(w, i)                                                                          \
-  ((PixelWeights){(float8)((float4)((w).now_x0.i), (float4)((w).now_x1.i)),                          \
-                  (float8)((float4)((w).before_x0.i), (float4)((w).before_x1.i)), (w).now_y0.i,      \
-                  (w).now_y1.i, (w).before_y0.i, (w).before_y1.i})
+#define PIXEL_WEIGHTS(w, i)                                                                         \
+  ((PixelWeights){(float8)((float4)(LANE((w).now_x0, i)), (float4)(LANE((w).now_x1, i))),             \
+                  (float8)((float4)(LANE((w).before_x0, i)), (float4)(LANE((w).before_x1, i))),       \
+                  LANE((w).now_y0, i), LANE((w).now_y1, i), LANE((w).before_y0, i), LANE((w).before_y1, i)})
 
 // The samples of one pixel: a pair a row.
 typedef struct FourPairs {
@@ -35,16 +35,16 @@ typedef struct FourPairs {
 } FourPairs;
 
 // (1 - d^2 / r^2)^3, close to a Gaussian of sigma .41 r; 0 from d = r on. `falloff` is 1 / r^2.
-static inline float8 distance_weight(float8 distance, float falloff) {
-  const float8 rest = max(1.0f - distance * distance * falloff, (float8)(0.0f));
+static inline LaneFloat distance_weight(LaneFloat distance, float falloff) {
+  const LaneFloat rest = max(1.0f - distance * distance * falloff, (LaneFloat)(0.0f));
   return rest * rest * rest;
 }
 
-static inline Weights weights_of(const ReprojectedParams* params, float8 now_x, float8 now_y, float8 before_x,
-                                 float8 before_y, float8 trust) {
-  const float8 rest = 1.0f - trust;
-  const float8 left = 1.0f - now_x;
-  const float8 above = 1.0f - now_y;
+static inline Weights weights_of(const ReprojectedParams* params, LaneFloat now_x, LaneFloat now_y, LaneFloat before_x,
+                                 LaneFloat before_y, LaneFloat trust) {
+  const LaneFloat rest = 1.0f - trust;
+  const LaneFloat left = 1.0f - now_x;
+  const LaneFloat above = 1.0f - now_y;
   Weights w;
   w.now_x0 = MULTIPLY_ADD(distance_weight(now_x, params->falloff0_x), trust, left * rest);
   w.now_x1 = MULTIPLY_ADD(distance_weight(left, params->falloff0_x), trust, now_x * rest);
@@ -54,9 +54,9 @@ static inline Weights weights_of(const ReprojectedParams* params, float8 now_x, 
   w.before_x1 = distance_weight(1.0f - before_x, params->falloff1_x);
   w.before_y0 = distance_weight(before_y, params->falloff1_y) * trust;
   w.before_y1 = distance_weight(1.0f - before_y, params->falloff1_y) * trust;
-  const float8 sum = MULTIPLY_ADD(w.before_x0 + w.before_x1, w.before_y0 + w.before_y1,
+  const LaneFloat sum = MULTIPLY_ADD(w.before_x0 + w.before_x1, w.before_y0 + w.before_y1,
                                   (w.now_x0 + w.now_x1) * (w.now_y0 + w.now_y1));
-  const float8 scale = 1.0f / sum;
+  const LaneFloat scale = 1.0f / sum;
   w.now_y0 *= scale;
   w.now_y1 *= scale;
   w.before_y0 *= scale;

@@ -56,15 +56,6 @@ static inline void copy_reactive(REACTIVE_TEXELS from, TexelLayout source, int x
 #endif
 }
 
-static inline float load_reactive(REACTIVE_TEXELS texels, TexelLayout layout, int x, int y) {
-#if SOURCE_STORAGE == IMAGE
-  return read_imagef(texels, (int2)(x, y)).x;
-#else
-  const float code = convert_float(texels[texel_index(layout, x, y)]);
-  return FRACTION_OF_CODE(code);
-#endif
-}
-
 // A value in [0, 1], rounded to the nearest code. For an image here, too: left to itself a device may be off by 0.6
 // codes (1.2, 8.3.1.2).
 static inline void store_reactive(STORED_REACTIVE texels, TexelLayout layout, int x, int y, float value) {

@@ -34,95 +34,69 @@
 #error "VIEW must be PICTURE, LAYERS, COVERAGE or NEAR"
 #endif
 
-// Tells each channel of four pixels whether there are two layers.
-static inline int16 two_layers(float4 confidence) {
-  return to_four_masks(as_int4(confidence) >> 31);
-}
-
 #if VIEW == PICTURE
-// Shows four pixels. `far` is the picture so far, `confidence` that of the far layer, as stored: its sign tells whether
+// Shows pixels. `far` is the picture so far, `confidence` that of the far layer, as stored: its sign tells whether
 // there are two layers. Where there is one, `near` is 0.
-static inline float16 shown_of(float16 far, float16 near, float4 confidence) {
-  const float16 covered = to_four_texels(near.s37bf), coverage = clamp(covered, 0.0f, 1.0f);
-  const float16 unknown = to_four_texels(clamp(1.0f - fabs(confidence) / CONFIDENCE_MIN, 0.0f, 1.0f));
-  const int16 is_stood_in = (unknown > 0.0f) & (coverage > SHOWN_COVERAGE_MIN);
-  const float16 behind = select(far, far + (near / covered - far) * unknown, is_stood_in);
-  const float16 composed = select(near, coverage, LAST_CHANNELS) + (1.0f - coverage) * behind;
-  return select(far, composed, two_layers(confidence));
+static inline LaneTexels shown_of(LaneTexels far, LaneTexels near, LaneFloat confidence) {
+  const LaneFloat covered = last_channels(near), coverage = clamp(covered, 0.0f, 1.0f);
+  const LaneFloat unknown = clamp(1.0f - fabs(confidence) / CONFIDENCE_MIN, 0.0f, 1.0f);
+  const LaneMask is_stood_in = (unknown > 0.0f) & (coverage > SHOWN_COVERAGE_MIN);
+  const LaneTexels behind = select_texels(far, move_to(far, over(near, covered), unknown), is_stood_in);
+  const LaneTexels composed = add_times(with_last(near, coverage), behind, 1.0f - coverage);
+  return select_texels(far, composed, as_lane_int(confidence) < 0);
 }
 #else
-static inline float4 view_of(float4 near, float confidence) {
+static inline LaneTexels shown_of(LaneTexels far, LaneTexels near, LaneFloat confidence) {
+  const LaneFloat one = (LaneFloat)(1.0f);
 #if VIEW == LAYERS
-  return (float4)(as_int(confidence) < 0 ? 1.0f : 0.0f, near.w, fabs(confidence) * (1.0f / CONFIDENCE_MAX), 1.0f);
+  const LaneFloat has_two = select((LaneFloat)(0.0f), one, as_lane_int(confidence) < 0);
+  return texels_of(has_two, last_channels(near), fabs(confidence) * (1.0f / CONFIDENCE_MAX), one);
 #elif VIEW == COVERAGE
-  return (float4)(near.w, near.w, near.w, 1.0f);
+  return texels_of(last_channels(near), last_channels(near), last_channels(near), one);
 #else
-  return (float4)(near.xyz, 1.0f);
+  return with_last(near, one);
 #endif
-}
-
-static inline float16 shown_of(float16 far, float16 near, float4 confidence) {
-  return (float16)(view_of(near.s0123, confidence.x), view_of(near.s4567, confidence.y),
-                   view_of(near.s89ab, confidence.z), view_of(near.scdef, confidence.w));
 }
 #endif
 
-// Loads the first `count` of the four pixels from `index` on; the others are 0.
-static inline float16 load_pixels(OUTPUT_TEXELS texels, int index, int count) {
+// Loads the first `count` of the pixels from `index` on.
+static inline LaneTexels load_pixels(OUTPUT_TEXELS texels, int index, int count) {
+  LaneTexels pixels = no_texels();
+#if LANES == 8
+  if (count >= kLanes) {
 #if OUTPUT_FORMAT == HALF
-  if (count >= 4) return load_half_texels4(texels, index);
-  float4 texel[4] = {(float4)(0.0f), (float4)(0.0f), (float4)(0.0f), (float4)(0.0f)};
-  for (int i = 0; i < count; ++i) texel[i] = vload_half4(index + i, texels);
+    pixels.left = load_half_texels4(texels, index);
+    pixels.right = load_half_texels4(texels, index + 4);
 #else
-  if (count >= 4) return vload16(0, texels + 4 * index);
-  float4 texel[4] = {(float4)(0.0f), (float4)(0.0f), (float4)(0.0f), (float4)(0.0f)};
-  for (int i = 0; i < count; ++i) texel[i] = vload4(index + i, texels);
+    pixels.left = vload16(0, texels + 4 * index);
+    pixels.right = vload16(1, texels + 4 * index);
 #endif
-  return vload16(0, (const float*)texel);
-}
-
-// Stores finite values; half saturates instead of becoming infinite.
-static inline void store_pixels(OUTPUT_TEXELS texels, int index, int count, float16 pixels) {
+    return pixels;
+  }
+#endif
+  for (int i = 0; i < kLanes; ++i) {
+    const int at = index + min(i, count - 1);
 #if OUTPUT_FORMAT == HALF
-  const float16 held = clamp(pixels, -FINITE_HALF_MAX, FINITE_HALF_MAX);
-  if (count >= 4) {
-    store_half_texels4(texels, index, held);
-    return;
-  }
-  float4 texel[4];
-  vstore16(held, 0, (float*)texel);
-  for (int i = 0; i < count; ++i) vstore_half4_rte(texel[i], index + i, texels);
+    pixels = push_texel(pixels, vload_half4(at, texels));
 #else
-  if (count >= 4) {
-    vstore16(pixels, 0, texels + 4 * index);
-    return;
-  }
-  float4 texel[4];
-  vstore16(pixels, 0, (float*)texel);
-  for (int i = 0; i < count; ++i) vstore4(texel[i], index + i, texels);
+    pixels = push_texel(pixels, vload4(at, texels));
 #endif
-}
-
-// Shows the first `count` of four pixels with what the near layer has of them.
-static inline void show_pixels(OUTPUT_TEXELS output, int index, int count, float16 near, float4 confidence) {
-  if (count < 1) return;
-  const float16 far = load_pixels(output, index, count);
-  const float16 known = select((float16)(0.0f), near, two_layers(confidence));
-  store_pixels(output, index, count, shown_of(far, known, confidence));
+  }
+  return pixels;
 }
 
 // Loads a layer's texels of the pixels from (x, y) on.
-static inline EightTexels load_pixels_of(const PastLayers* known, HistoryLayer layer, int x, int y) {
-#if ON_CPU
-  const EightTexels texels = {load_row(layer, window_at(known, x, y, 1), 0),
-                              load_row(layer, window_at(known, x + 4, y, 1), 0)};
+static inline LaneTexels load_pixels_of(const PastLayers* known, HistoryLayer layer, int x, int y) {
+#if LANES == 8
+  const LaneTexels texels = {load_row(layer, window_at(known, x, y, 1), 0),
+                             load_row(layer, window_at(known, x + 4, y, 1), 0)};
   return texels;
 #else
   return load_history_lanes(layer, y * layer.width + x);
 #endif
 }
 
-#if ON_CPU
+#if LANES == 8
 // Loads twelve texels of the near layer's picture, side by side.
 static inline TwelveTexels load_near_row12(const PastLayers* known, DEPTH_TEXELS depth, float between,
                                            const RowWindows* windows, int row) {
@@ -133,8 +107,8 @@ static inline TwelveTexels load_near_row12(const PastLayers* known, DEPTH_TEXELS
 }
 
 // Resamples the near layer at the pixels from (x, y) on; those of one layer may get anything.
-static inline EightTexels sample_near(const PastLayers* known, DEPTH_TEXELS depth, float between, Display display,
-                                      int x, int y) {
+static inline LaneTexels sample_near(const PastLayers* known, DEPTH_TEXELS depth, float between, Display display, int x,
+                                     int y) {
   if (!display.has_phase) return load_pixels_of(known, known->near, x, y);
   const RowWindows windows = windows_from(known, x - display.step_x, y - display.step_y, 4, true);
   const float16 none = (float16)(0.0f);
@@ -151,12 +125,11 @@ static inline EightTexels sample_near(const PastLayers* known, DEPTH_TEXELS dept
 }
 #else
 // The same of one pixel.
-static inline EightTexels sample_near(const PastLayers* known, DEPTH_TEXELS depth, float between, Display display,
-                                      int x, int y) {
+static inline LaneTexels sample_near(const PastLayers* known, DEPTH_TEXELS depth, float between, Display display, int x,
+                                     int y) {
   if (!display.has_phase) return load_pixels_of(known, known->near, x, y);
   const TexelWindow window = window_at(known, x - display.step_x, y - display.step_y, 4);
-  return push_texel(no_texels(),
-                    sample_neighbourhood(load_near_texels(known, depth, between, window), display.wx, display.wy));
+  return sample_neighbourhood(load_near_texels(known, depth, between, window), display.wx, display.wy);
 }
 #endif
 
@@ -173,14 +146,15 @@ __kernel void display_layers(const TemporalDisplayParams params, const HistorySa
   for (int x = item.first; x < item.end; x += item.step) {
     const LayerTile layer = layers[y / kTemporalTile * params.tiles_x + x / kTemporalTile];
     if (VIEW == PICTURE && !layer.is_split) continue;
-    const float8 confidence = confidences(load_pixels_of(&known, known.far, x, y));
-    const bool any_split = layer.is_split && any_lane(as_int8(confidence) < 0);
+    const LaneFloat confidence = confidences(load_pixels_of(&known, known.far, x, y));
+    const bool any_split = layer.is_split && any_lane(as_lane_int(confidence) < 0);
     if (VIEW == PICTURE && !any_split) continue;
     const Display display = display_of(layer.phase_x, layer.phase_y);
-    EightTexels near = {(float16)(0.0f), (float16)(0.0f)};
+    LaneTexels near = no_texels();
     if (any_split) near = sample_near(&known, depth, layer.between, display, x, y);
     const int index = texel_index(params.output, x, y), count = pixels_from(item, x);
-    show_pixels(output, index, count, near.left, confidence.lo);
-    show_pixels(output, index + 4, count - 4, near.right, confidence.hi);
+    const LaneTexels known_near = select_texels(no_texels(), near, as_lane_int(confidence) < 0);
+    const LaneTexels far = load_pixels(output, index, count);
+    stream_output_lanes(output, params.output, x, y, count, shown_of(far, known_near, confidence));
   }
 }

@@ -22,16 +22,16 @@ enum { kTogether = kLanes };  // samples that are looked at together
 
 // Whether a sample from (x, y) on may be near: its depth is less than a neighbour's by the gap between layers.
 static inline bool may_be_near(const LayerParams* params, DEPTH_TEXELS depth, int x, int y) {
-#if SOURCE_STORAGE == BUFFER && ON_CPU
+#if SOURCE_STORAGE == BUFFER && LANES == 8
   if (x < 1 || x + kTogether + 1 > params->width) return true;
-  float8 least = (float8)(FLT_MAX), own = least;
+  LaneFloat least = (LaneFloat)(FLT_MAX), own = least;
   for (int row = max(y - 1, 0); row <= min(y + 1, params->height - 1); ++row) {
     __global const float* line = depth + texel_index(params->depth, x, row);
-    const float8 middle = vload8(0, line);
+    const LaneFloat middle = vload8(0, line);
     least = min(min(least, middle), min(vload8(0, line - 1), vload8(0, line + 1)));
     if (row == y) own = middle;
   }
-  return any(!(own - least <= LAYER_GAP_MIN * own));
+  return any_lane(!(own - least <= LAYER_GAP_MIN * own));
 #else
   return true;
 #endif

@@ -36,7 +36,7 @@ static inline bool has_record_near(const LayerParams* params, __global const uin
   uint any = 0;
   for (int row = max(y - kReach, 0); row <= min(y + kReach, params->height - 1); ++row) {
     __global const uint* line = keys + row * params->width;
-    if (ON_CPU && right - left == kWindow + 2 * kReach) {
+    if (LANES == 8 && right - left == kWindow + 2 * kReach) {
       const uint8 start = vload8(0, line + left);
       const uint4 rest = vload4(0, line + left + 8);
       const uint4 both = start.lo | start.hi | rest;
@@ -48,9 +48,9 @@ static inline bool has_record_near(const LayerParams* params, __global const uin
   return any != 0;
 }
 
-// The cell of the record of each of eight samples of a row, of which kWindow count; -1 if none is within reach.
+// The cell of the record of each of some samples of a row; -1 if none is within reach.
 typedef struct NearestRecords {
-  int cell[8];
+  int cell[kLanes];
 } NearestRecords;
 
 // Returns where a cell's record lies, counted in samples. A new one is exactly at its cell's sample.
@@ -64,27 +64,27 @@ static inline float2 record_position(const LayerParams* params, uint key, int co
 // Finds the records nearest to the samples from (x, y) on, old ones as if they were farther; of two alike the first.
 static inline NearestRecords find_records(const LayerParams* params, __global const uint* keys,
                                           __global const LayerRecord* previous_records, int x, int y) {
-  const float8 sample_x = convert_float8((int8)(x) + (int8)(0, 1, 2, 3, 4, 5, 6, 7));
+  const LaneFloat sample_x = to_lane_float(x + LANE_NUMBERS);
   const float sample_y = (float)y;
-  float8 best = (float8)(FLT_MAX);
-  int8 cells = (int8)(-1);
+  LaneFloat best = (LaneFloat)(FLT_MAX);
+  LaneInt cells = (LaneInt)(-1);
   for (int row = max(y - kReach, 0); row <= min(y + kReach, params->height - 1); ++row) {
     for (int column = max(x - kReach, 0); column < min(x + kWindow + kReach, params->width); ++column) {
       const int cell = row * params->width + column;
       const uint key = keys[cell];
       if (key == 0) continue;
       const float2 position = record_position(params, key, column, row, previous_records);
-      const float8 apart_x = position.x - sample_x;
+      const LaneFloat apart_x = position.x - sample_x;
       const float apart_y = position.y - sample_y;
-      const float8 distance = apart_x * apart_x + apart_y * apart_y;
-      const float8 cost = distance + RECORD_AGE_COST * (float)record_age(key);
-      const int8 better = (distance <= RECORD_DISTANCE_MAX * RECORD_DISTANCE_MAX) & (cost < best);
+      const LaneFloat distance = apart_x * apart_x + apart_y * apart_y;
+      const LaneFloat cost = distance + RECORD_AGE_COST * (float)record_age(key);
+      const LaneMask better = (distance <= RECORD_DISTANCE_MAX * RECORD_DISTANCE_MAX) & (cost < best);
       best = select(best, cost, better);
-      cells = select(cells, (int8)(cell), better);
+      cells = select(cells, (LaneInt)(cell), better);
     }
   }
   NearestRecords nearest;
-  vstore8(cells, 0, nearest.cell);
+  STORE_LANES(cells, nearest.cell);
   return nearest;
 }
 

@@ -25,19 +25,19 @@
 #include "temporal/constants.h"
 #include "temporal/resized_pixels.h"
 
-// The states of the texels nearest to eight pixels.
+// The states of the texels nearest to pixels.
 typedef struct NearestTexels {
-  float far_depth[8], near_depth[8], near_confidence[8];  // kLanes of them
-  bool is_split[8];
+  float far_depth[kLanes], near_depth[kLanes], near_confidence[kLanes];
+  bool is_split[kLanes];
 } NearestTexels;
 
 // Sets the pixels' phases to those of the near layer.
 static inline NearestTexels look_at_nearest(const ResizeParams* params, const PastLayers* past, DEPTH_TEXELS depth,
                                             ResizedPixels* pixels) {
   NearestTexels nearest;
-  int texel[8];
-  float phase_x[8], phase_y[8];
-  vstore8(pixels->x, 0, texel);
+  int texel[kLanes];
+  float phase_x[kLanes], phase_y[kLanes];
+  STORE_LANES(pixels->x, texel);
   for (int i = 0; i < kLanes; ++i) {
     const LayerState state = state_at(past, depth, texel[i], pixels->y);
     const float2 phase = phase_of(past, previous_tile(params, texel[i], pixels->y), kNearLayer);
@@ -48,8 +48,8 @@ static inline NearestTexels look_at_nearest(const ResizeParams* params, const Pa
     phase_x[i] = phase.x;
     phase_y[i] = phase.y;
   }
-  pixels->phase_x = vload8(0, phase_x);
-  pixels->phase_y = vload8(0, phase_y);
+  pixels->phase_x = LOAD_LANES(phase_x);
+  pixels->phase_y = LOAD_LANES(phase_y);
   return nearest;
 }
 
@@ -62,12 +62,13 @@ static inline float4 near_at(const PastLayers* past, DEPTH_TEXELS depth, float b
 // Adds `part` of the near layer at one place of each of the first `count` pixels that has two.
 static inline void add_near(const PastLayers* past, DEPTH_TEXELS depth, const NearestTexels* nearest,
                             SourcePlaces from, int count, float part, float4* sums) {
-  int8 x = from.x.texel, y = from.y.texel;
+  LaneInt x = from.x.texel, y = from.y.texel;
   Cubic wx = cubic_weights(from.x.fraction, HISTORY_SHARPNESS), wy = cubic_weights(from.y.fraction, HISTORY_SHARPNESS);
   for (int i = 0; i < count; ++i) {
     if (nearest->is_split[i]) {
       const float between = 0.5f * (nearest->far_depth[i] + nearest->near_depth[i]);
-      sums[i] += near_at(past, depth, between, x.s0, y.s0, first_weights(wx), first_weights(wy)) * part;
+      const float4 x_weights = first_weights(wx), y_weights = first_weights(wy);
+      sums[i] += near_at(past, depth, between, FIRST_LANE(x), FIRST_LANE(y), x_weights, y_weights) * part;
     }
     x = NEXT_LANES(x);
     y = NEXT_LANES(y);
@@ -94,9 +95,9 @@ __kernel void resize_layers(const ResizeParams params, const HistorySamples befo
     const int count = min(pixels_from(item, x), (int)kLanes);
     ResizedPixels pixels = pixels_among_texels(&params, positions, x, row);
     const NearestTexels nearest = look_at_nearest(&params, &past, depth, &pixels);
-    store_states(resized_states, y * params.width + x, count, vload8(0, nearest.far_depth),
-                 vload8(0, nearest.near_depth), vload8(0, nearest.near_confidence));
-    float4 sums[8];
+    store_states(resized_states, y * params.width + x, count, LOAD_LANES(nearest.far_depth),
+                 LOAD_LANES(nearest.near_depth), LOAD_LANES(nearest.near_confidence));
+    float4 sums[kLanes];
     for (int i = 0; i < kLanes; ++i) sums[i] = (float4)(0.0f);
     for (int place = 0; place < places; ++place) {
       const SourcePlaces from =

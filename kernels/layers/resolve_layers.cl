@@ -69,37 +69,36 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     // The far layers, or the only ones.
     const NearestSamples nearest = find_nearest_samples(&params, positions, x, row, tile);
     const LayeredPixels pixels = find_layers(depth, depth_layout, &params, splits, open_trust, &nearest);
-    EightReprojections motion = load_reprojections(&params, reprojection, &nearest);
+    Reprojections motion = load_reprojections(&params, reprojection, &nearest);
     const BothLayers fetched_both = fetch_both(&pixels, &past, depth1, tile, layer, &motion, x, y);
-    float8 known_alpha = fetched_both.far.known.alpha;
+    LaneFloat known_alpha = fetched_both.far.known.alpha;
     const FetchedHistory fetched = known_far(&pixels, &fetched_both.far, &motion);
     Evidence evidence = limit_confidence(&fetched, &motion);
     const RowLight row_light = light_of_row(light, &params, x, y);
     reject_by_light(&evidence, row_light);
-    evidence.rejection = select(evidence.rejection, (float8)(0.0f), pixels.is_split);
-    EightTexels known = relight(fetched.texels, row_light);
-    EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
-    float8 taken = far_samples(&pixels);
+    evidence.rejection = select(evidence.rejection, (LaneFloat)(0.0f), pixels.is_split);
+    LaneTexels known = relight(fetched.texels, row_light);
+    LaneTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
+    LaneFloat taken = far_samples(&pixels);
     if (light[tile_index].holds_back)
-      taken = select(taken, (float8)(0.0f), are_held_back(known, evidence.confidence, samples));
-    float8 inertia = (float8)(0.0f);
+      taken = select(taken, (LaneFloat)(0.0f), are_held_back(known, evidence.confidence, samples));
+    LaneFloat inertia = (LaneFloat)(0.0f);
     if (needs_correction(&evidence))
       inertia = correct_far(&pixels, colour, depth, depth_layout, &frame, &sample_motion, &nearest, &known,
                             &known_alpha, &evidence);
     if (layer.is_split) tile.is_rigid = 0;  // it does not move as a whole
-    float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence)) * taken;
+    LaneFloat weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence)) * taken;
     if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, count);
-    EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
-    mark_split(&sum, pixels.is_split);
+    const LaneTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
     const int index = y * params.output_width + x;
-    store_history8(updated, index, count, sum);
+    store_history_lanes(updated, index, count, mark_split(sum, pixels.is_split));
 #if ALPHA
-    store_alpha8(updated_alpha, index, count,
+    store_alpha_lanes(updated_alpha, index, count,
                  accumulate_alpha(known_alpha, evidence.confidence, inertia, samples, weight));
 #endif
 
     // The near layers.
-    const float8 zero = (float8)(0.0f);
+    const LaneFloat zero = (LaneFloat)(0.0f);
     if (!any_lane(pixels.is_split)) {
       store_states(updated_states, index, count, pixels.depth, zero, zero);
       continue;
@@ -111,7 +110,7 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     const float cut = light[tile_index].new_cut;
     KnownLayers near = known_near(&pixels, &fetched_both.near, row_light, cut);
     near = update_near(near, &pixels, colour, depth, depth_layout, &params, &nearest_near);
-    const int8 is_inside = LANE_NUMBERS < count;
+    const LaneMask is_inside = LANE_NUMBERS < count;
     store_near(updated_near, index, near.texels, pixels.is_split & is_inside);
     store_states(updated_states, index, count, select(pixels.depth, pixels.far_depth, pixels.is_split),
                  select(zero, pixels.near_depth, pixels.is_split), select(zero, near.confidence, pixels.is_split));

@@ -33,9 +33,9 @@ static inline ResizedPixels pixels_with_phases(const ResizeParams* params, __glo
                                                __global const TileReprojection* tiles, int x, Positions row) {
   ResizedPixels pixels = pixels_among_texels(params, positions, x, row);
   for (int i = 0; i < kLanes; ++i) {
-    __global const TileReprojection* tile = tiles + previous_tile(params, pixels.x.s0, pixels.y);
-    pixels.phase_x.s0 = tile->phase_x;
-    pixels.phase_y.s0 = tile->phase_y;
+    __global const TileReprojection* tile = tiles + previous_tile(params, FIRST_LANE(pixels.x), pixels.y);
+    FIRST_LANE(pixels.phase_x) = tile->phase_x;
+    FIRST_LANE(pixels.phase_y) = tile->phase_y;
     pixels.x = NEXT_LANES(pixels.x);
     pixels.phase_x = NEXT_LANES(pixels.phase_x);
     pixels.phase_y = NEXT_LANES(pixels.phase_y);
@@ -44,11 +44,11 @@ static inline ResizedPixels pixels_with_phases(const ResizeParams* params, __glo
 }
 
 // Returns the confidence of the texels nearest to the pixels' centres, less what resizing takes, with their signs.
-static inline float8 confidence_left(const ResizeParams* params, HistoryLayer layer, const ResizedPixels* pixels) {
-  int8 texel = pixels->x;
-  float8 stored = (float8)(0.0f);
+static inline LaneFloat confidence_left(const ResizeParams* params, HistoryLayer layer, const ResizedPixels* pixels) {
+  LaneInt texel = pixels->x;
+  LaneFloat stored = (LaneFloat)(0.0f);
   for (int i = 0; i < kLanes; ++i) {
-    stored.s0 = load_confidence(layer, pixels->y * layer.width + texel.s0);
+    FIRST_LANE(stored) = load_confidence(layer, pixels->y * layer.width + FIRST_LANE(texel));
     stored = NEXT_LANES(stored);
     texel = NEXT_LANES(texel);
   }
@@ -67,27 +67,23 @@ __kernel void resize_history(const ResizeParams params, __global const int* posi
   const float part = 1.0f / (float)(params.places_x * params.places_y);
   for (int x = item.first; x < item.end; x += item.step) {
     const ResizedPixels pixels = pixels_with_phases(&params, positions, previous_tiles, x, row);
-    EightTexels sum = {(float16)(0.0f), (float16)(0.0f)};
+    LaneTexels sum = no_texels();
 #if ALPHA
     const AlphaPlane plane = {alpha, params.previous_width, params.previous_height};
-    float8 sum_alpha = (float8)(0.0f);
+    LaneFloat sum_alpha = (LaneFloat)(0.0f);
 #endif
     for (int place = 0; place < params.places_x * params.places_y; ++place) {
       const SourcePlaces from =
           places_among_texels(&params, &pixels, place % params.places_x, place / params.places_x);
-      const EightTexels texels = resample_history(layer, from).texels;
-      sum.left += texels.left * part;
-      sum.right += texels.right * part;
+      sum = add_times(sum, resample_history(layer, from).texels, (LaneFloat)(part));
 #if ALPHA
       sum_alpha += resample_alpha(plane, from) * part;
 #endif
     }
-    const float8 confidence = confidence_left(&params, layer, &pixels);
-    sum.left.s37bf = confidence.lo;
-    sum.right.s37bf = confidence.hi;
-    store_history8(resized, y * params.width + x, pixels_from(item, x), sum);
+    sum = with_last(sum, confidence_left(&params, layer, &pixels));
+    store_history_lanes(resized, y * params.width + x, pixels_from(item, x), sum);
 #if ALPHA
-    store_alpha8(resized_alpha, y * params.width + x, pixels_from(item, x), sum_alpha);
+    store_alpha_lanes(resized_alpha, y * params.width + x, pixels_from(item, x), sum_alpha);
 #endif
   }
 }

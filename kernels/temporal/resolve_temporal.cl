@@ -79,28 +79,28 @@
 #endif
 
 #if VIEW != PICTURE
-// A view of eight pixels of a row.
+// A view of pixels of a row.
 typedef struct View {
-  float8 red, green, blue;
+  LaneFloat red, green, blue;
 } View;
 
 #if VIEW == CONFIDENCE
-static inline View view_confidence(EightTexels updated) {
-  const float8 part = confidences(updated) * (1.0f / CONFIDENCE_MAX);
+static inline View view_confidence(LaneTexels updated) {
+  const LaneFloat part = confidences(updated) * (1.0f / CONFIDENCE_MAX);
   const View view = {part, part, part};
   return view;
 }
 #elif VIEW == REJECTION
-static inline View view_rejection(const EightReprojections* motion, RowLight light) {
+static inline View view_rejection(const Reprojections* motion, RowLight light) {
   const View view = {1.0f - motion->trust, edge_rejection(motion->motion_edge), ramp_cells(light)};
   return view;
 }
 #else
 static inline View view_phase(TileReprojection tile, const FetchedHistory* history) {
   View view;
-  view.red = tile.is_rigid ? (float8)(tile.phase_x + 0.5f) : history->fraction_x;
-  view.green = tile.is_rigid ? (float8)(tile.phase_y + 0.5f) : history->fraction_y;
-  view.blue = (float8)(tile.is_rigid ? 1.0f : 0.0f);
+  view.red = tile.is_rigid ? (LaneFloat)(tile.phase_x + 0.5f) : history->fraction_x;
+  view.green = tile.is_rigid ? (LaneFloat)(tile.phase_y + 0.5f) : history->fraction_y;
+  view.blue = (LaneFloat)(tile.is_rigid ? 1.0f : 0.0f);
   return view;
 }
 #endif
@@ -108,7 +108,8 @@ static inline View view_phase(TileReprojection tile, const FetchedHistory* histo
 // Stores the first `count` of the pixels from (x, y) on.
 static inline void store_view(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int count, View view) {
   for (int i = 0; i < min(count, (int)kLanes); ++i) {
-    store_output(output, layout, x + i, y, (float4)(view.red.s0, view.green.s0, view.blue.s0, 1.0f));
+    store_output(output, layout, x + i, y,
+                 (float4)(FIRST_LANE(view.red), FIRST_LANE(view.green), FIRST_LANE(view.blue), 1.0f));
     view.red = NEXT_LANES(view.red);
     view.green = NEXT_LANES(view.green);
     view.blue = NEXT_LANES(view.blue);
@@ -125,7 +126,7 @@ static inline void store_view(OUTPUT_TEXELS output, TexelLayout layout, int x, i
 
 enum { kPlainAhead = 6 * kTemporalTile };  // texels to prefetch
 
-// Adds samples to eight pixels on the path kCopiedPlain, from (x, y) on. Returns false, and stores nothing, where too
+// Adds samples to pixels on the path kCopiedPlain, from (x, y) on. Returns false, and stores nothing, where too
 // little is known of one, or a sample is bright or not finite.
 static inline bool resolve_plain_row(const TemporalParams* params, COLOUR_TEXELS colour, HistoryLayer layer,
                                      TileReprojection tile, const NearestSamples* nearest, STORED_HISTORY updated,
@@ -135,11 +136,11 @@ static inline bool resolve_plain_row(const TemporalParams* params, COLOUR_TEXELS
   will_read_history(layer, from + kPlainAhead);
   WILL_WRITE(updated + 4 * (index + kPlainAhead));
   const FetchedHistory fetched = copy_history(layer, x - tile.step_x, y - tile.step_y);
-  const EightTexels samples = load_samples(colour, params->frame0.colour, nearest->x, nearest->y);
+  const LaneTexels samples = load_samples(colour, params->frame0.colour, nearest->x, nearest->y);
   if (any_lane(fetched.confidence < CONFIDENCE_MIN) || may_be_bright(samples)) return false;
-  const float8 weight = distance_weights(params, nearest, reach_of(tile, fetched.confidence));
-  const EightTexels sum = accumulate(fetched.texels, fetched.confidence, (float8)(0.0f), samples, weight);
-  store_history8(updated, index, kLanes, sum);
+  const LaneFloat weight = distance_weights(params, nearest, reach_of(tile, fetched.confidence));
+  const LaneTexels sum = accumulate(fetched.texels, fetched.confidence, (LaneFloat)(0.0f), samples, weight);
+  store_history_lanes(updated, index, kLanes, sum);
   return true;
 }
 
@@ -168,8 +169,8 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     const int tile_index = tile_y * params.tiles_x + tile_x;
     const TileReprojection tile = tiles[tile_index];
     const bool right_is_even = has_even_light(light, &params, tile_x + 1, tile_y);
-    if (!ON_CPU) left_is_even = has_even_light(light, &params, tile_x - 1, tile_y);
-    if (!ON_CPU) own_is_even = has_even_light(light, &params, tile_x, tile_y);
+    if (kLanes == 1) left_is_even = has_even_light(light, &params, tile_x - 1, tile_y);
+    if (kLanes == 1) own_is_even = has_even_light(light, &params, tile_x, tile_y);
     const bool even = left_is_even && own_is_even && right_is_even;
     left_is_even = own_is_even;
     own_is_even = right_is_even;
@@ -187,14 +188,14 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
           path_of_row(rows, previous_tiles, &params, reactive0, reactive1, &nearest, tile, tile_x, y);
       if (path == kCopiedPlain && resolve_plain_row(&params, colour, layer, tile, &nearest, updated, x, y)) continue;
       const bool looks_up_motion = path == kResampled || path == kCopied;
-      EightReprojections motion = no_motion();
+      Reprojections motion = no_motion();
       if (looks_up_motion) motion = reproject_pixels(&params, reprojection, reactive0, reactive1, &nearest);
 
       // Fetch history, and limit its confidence.
       const FetchedHistory fetched = fetch_history(layer, previous_tiles, &params, tile, path, &motion, x, y);
       Evidence evidence = full_evidence(&fetched);
       if (looks_up_motion) evidence = limit_confidence(&fetched, &motion);
-      float8 known_alpha = (float8)(1.0f);
+      LaneFloat known_alpha = (LaneFloat)(1.0f);
 #if ALPHA
       const AlphaPlane plane = {alpha, params.output_width, params.output_height};
       known_alpha = fetch_alpha(plane, previous_tiles, &params, tile, path, &motion, x, y);
@@ -203,29 +204,29 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
       // Relight.
       const RowLight row_light = even ? even_light() : light_of_row(light, &params, x, y);
       reject_by_light(&evidence, row_light);
-      EightTexels known = relight(fetched.texels, row_light);
+      LaneTexels known = relight(fetched.texels, row_light);
 
       // Load the samples, and find outliers to hold back.
-      EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
-      int8 held = (int8)(0);
+      LaneTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
+      LaneMask held = mask_of(false);
       if (holds_back) held = are_held_back(known, evidence.confidence, samples);
 
       // Rectify and reseed.
-      float8 inertia = (float8)(0.0f);
+      LaneFloat inertia = (LaneFloat)(0.0f);
       if (needs_correction(&evidence))
         inertia =
-            correct_history(colour, &frame, &sample_motion, &nearest, (int8)(-1), &known, &known_alpha, &evidence);
+            correct_history(colour, &frame, &sample_motion, &nearest, mask_of(true), &known, &known_alpha, &evidence);
 
       // Accumulate.
-      float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence));
-      if (holds_back) weight = select(weight, (float8)(0.0f), held);
+      LaneFloat weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence));
+      if (holds_back) weight = select(weight, (LaneFloat)(0.0f), held);
       if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, count);
-      const EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
+      const LaneTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
 
       // Store.
-      store_history8(updated, y * params.output_width + x, count, sum);
+      store_history_lanes(updated, y * params.output_width + x, count, sum);
 #if ALPHA
-      store_alpha8(updated_alpha, y * params.output_width + x, count,
+      store_alpha_lanes(updated_alpha, y * params.output_width + x, count,
                    accumulate_alpha(known_alpha, evidence.confidence, inertia, samples, weight));
 #endif
 #if VIEW == CONFIDENCE

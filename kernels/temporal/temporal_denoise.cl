@@ -73,8 +73,7 @@ static inline float8 sum_of_five(float16 row) {
 static inline float16 confidences_around(HistoryLayer layer, int x, int y) {
   const int row = clamp(y, 0, layer.height - 1) * layer.width, first = x - kRowMargin;
   if (first >= 0 && first + 16 <= layer.width) {
-    return (float16)(confidences(load_history8(layer, row + first)),
-                     confidences(load_history8(layer, row + first + 8)));
+    return (float16)(load_confidences8(layer, row + first), load_confidences8(layer, row + first + 8));
   }
   float stored[16];
   for (int i = 0; i < 16; ++i)
@@ -156,7 +155,7 @@ static inline float8 likeness(const NoisyRow* middle, float8 part, int dx, int d
     variance += shifted(own->variance, 0) + shifted(other->variance, dx);
   }
   const float8 apart = sum_of_three(distance) / (part * sum_of_three(variance) + DENOISED_DISTANCE_MIN);
-  return bell(apart) * shifted_pixels(middle[dy].weight, dx);
+  return bell8(apart) * shifted_pixels(middle[dy].weight, dx);
 }
 
 // Denoises the pixels from (x, y) on, of the row in the middle.

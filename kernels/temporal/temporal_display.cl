@@ -30,9 +30,9 @@
 #error "ALPHA must be 0 or 1"
 #endif
 
-// Eight pixels: as history holds them, and as they are shown.
+// Pixels: as history holds them, and as they are shown.
 typedef struct Pixels {
-  EightTexels own, shown;
+  LaneTexels own, shown;
 } Pixels;
 
 // Returns the tile's pixels from (x, y) on, anywhere, clamped to the edge. The slow path.
@@ -50,14 +50,30 @@ static inline Pixels gather_pixels(HistoryLayer layer, const Display* display, i
   return pixels;
 }
 
-// Whether pixels are made side by side, and all texels that the cubic and load_around() need are inside.
+#if LANES == 8
+// Whether all texels that the cubic and load_around() need are inside.
 static inline bool lies_inside(HistoryLayer layer, const Display* display, int x, int y) {
   const int first_y = y - display->step_y;
-  return ON_CPU && x >= display->step_x && first_y >= 0 && x + 11 <= layer.width && first_y + 4 <= layer.height;
+  return x >= display->step_x && first_y >= 0 && x + 11 <= layer.width && first_y + 4 <= layer.height;
 }
 
-// Whether any of eight pixels is.
-static inline bool is_smoothed(const TemporalDisplayParams* params, float8 confidence) {
+// The same where they are. `has_rows`: `rows` are those of the row above.
+static inline Pixels load_pixels(HistoryLayer layer, const Display* display, int x, int y, FilteredRows* rows,
+                                 bool* has_rows) {
+  Pixels pixels;
+  pixels.own = load_history_lanes(layer, y * layer.width + x);
+  pixels.shown = pixels.own;
+  if (!display->has_phase) return pixels;
+  const int index = (y - display->step_y) * layer.width + x - display->step_x;
+  *rows = *has_rows ? next_rows(*rows, layer, index, display->wx) : filter_rows(layer, index, display->wx);
+  *has_rows = true;
+  pixels.shown = blend_filtered(rows, display->wy);
+  return pixels;
+}
+#endif
+
+// Whether any of the pixels is.
+static inline bool is_smoothed(const TemporalDisplayParams* params, LaneFloat confidence) {
 #if SMOOTH
   return !params->first && any_lane(confidence < SMOOTHED_CONFIDENCE_MAX);
 #else
@@ -80,16 +96,17 @@ static inline float alpha_around(HistoryLayer layer, AlphaPlane plane, int x, in
 }
 
 // Finds the alpha that is shown of the first `count` pixels from (x, y) on.
-static inline float8 show_alpha(HistoryLayer layer, AlphaPlane plane, const Display* display, int x, int y, int count,
-                                bool smooth, float8 confidence) {
+static inline LaneFloat show_alpha(HistoryLayer layer, AlphaPlane plane, const Display* display, int x, int y,
+                                   int count, bool smooth, LaneFloat confidence) {
   SmoothParts parts = smooth_parts(confidence);
-  float8 shown = (float8)(1.0f);
+  LaneFloat shown = (LaneFloat)(1.0f);
   for (int i = 0; i < kLanes; ++i) {
     if (i < count) {
-      shown.s0 = load_alpha(plane, y * plane.width + x + i);
+      FIRST_LANE(shown) = load_alpha(plane, y * plane.width + x + i);
       if (display->has_phase)
-        shown.s0 = sample_alpha(plane, x + i - display->step_x, y - display->step_y, display->wx, display->wy);
-      if (smooth) shown.s0 = shown.s0 * parts.own.s0 + alpha_around(layer, plane, x + i, y) * parts.other.s0;
+        FIRST_LANE(shown) = sample_alpha(plane, x + i - display->step_x, y - display->step_y, display->wx, display->wy);
+      const float own = FIRST_LANE(parts.own), other = FIRST_LANE(parts.other);
+      if (smooth) FIRST_LANE(shown) = FIRST_LANE(shown) * own + alpha_around(layer, plane, x + i, y) * other;
     }
     shown = NEXT_LANES(shown);
     parts.own = NEXT_LANES(parts.own);
@@ -98,30 +115,13 @@ static inline float8 show_alpha(HistoryLayer layer, AlphaPlane plane, const Disp
   return shown;
 }
 
-// The first `count` of eight pixels.
-static inline void store_pixels(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int count, EightTexels texels,
-                                float8 alphas) {
+// The first `count` of the pixels.
+static inline void store_pixels(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int count, LaneTexels texels,
+                                LaneFloat alphas) {
   for (int i = 0; i < min(count, (int)kLanes); ++i) {
-    store_output(output, layout, x + i, y, (float4)(first_texel(texels).xyz, alphas.s0));
+    store_output(output, layout, x + i, y, (float4)(first_texel(texels).xyz, FIRST_LANE(alphas)));
     texels = push_texel(texels, first_texel(texels));
     alphas = NEXT_LANES(alphas);
-  }
-}
-#else
-// The first `count` of eight pixels.
-static inline void store_opaque(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int count,
-                                EightTexels texels) {
-  const float16 left = select(texels.left, (float16)(1.0f), LAST_CHANNELS);
-  const float16 right = select(texels.right, (float16)(1.0f), LAST_CHANNELS);
-  if (count >= 8) {
-    stream_output4(output, layout, x, y, left);
-    stream_output4(output, layout, x + 4, y, right);
-    return;
-  }
-  EightTexels rest = {left, right};
-  for (int i = 0; i < count; ++i) {
-    store_output(output, layout, x + i, y, first_texel(rest));
-    rest = push_texel(rest, first_texel(rest));
   }
 }
 #endif
@@ -138,40 +138,39 @@ __kernel void temporal_display(const TemporalDisplayParams params, __global cons
     const int count = pixels_from(item, x);
     const TileReprojection tile = tiles[first_y / kTemporalTile * params.tiles_x + x / kTemporalTile];
     const Display display = display_of(tile.phase_x, tile.phase_y);
+#if LANES == 8
     FilteredRows rows;
-    bool has_rows = false;  // those of the row above
+    bool has_rows = false;
+#endif
     for (int y = first_y; y < end_y; ++y) {
       // Resample.
+#if LANES == 8
       const bool inside = lies_inside(layer, &display, x, y);
-      Pixels pixels;
-      if (inside) {
-        pixels.own = load_history_lanes(layer, y * layer.width + x);
-        pixels.shown = pixels.own;
-      } else {
-        pixels = gather_pixels(layer, &display, x, y);
-      }
-      if (inside && display.has_phase) {
-        const int index = (y - display.step_y) * layer.width + x - display.step_x;
-        rows = has_rows ? next_rows(rows, layer, index, display.wx) : filter_rows(layer, index, display.wx);
-        has_rows = true;
-        pixels.shown = blend_filtered(&rows, display.wy);
-      }
+      Pixels pixels = inside ? load_pixels(layer, &display, x, y, &rows, &has_rows)
+                             : gather_pixels(layer, &display, x, y);
+#else
+      Pixels pixels = gather_pixels(layer, &display, x, y);
+#endif
 
       // Smooth.
-      const float8 confidence = fabs(confidences(pixels.own));
+      const LaneFloat confidence = fabs(confidences(pixels.own));
       const bool smooth = is_smoothed(&params, confidence);
       if (smooth) {
-        const EightTexels around = inside ? load_around(layer, x, y) : gather_around(layer, x, y);
+#if LANES == 8
+        const LaneTexels around = inside ? load_around(layer, x, y) : gather_around(layer, x, y);
+#else
+        const LaneTexels around = gather_around(layer, x, y);
+#endif
         pixels.shown = smooth_little_known(pixels.shown, around, smooth_parts(confidence));
       }
 
       // Store.
 #if ALPHA
       const AlphaPlane plane = {alpha, params.output_width, params.output_height};
-      const float8 alphas = show_alpha(layer, plane, &display, x, y, min(count, (int)kLanes), smooth, confidence);
+      const LaneFloat alphas = show_alpha(layer, plane, &display, x, y, min(count, (int)kLanes), smooth, confidence);
       store_pixels(output, params.output, x, y, count, pixels.shown, alphas);
 #else
-      store_opaque(output, params.output, x, y, count, pixels.shown);
+      stream_output_lanes(output, params.output, x, y, count, with_last(pixels.shown, (LaneFloat)(1.0f)));
 #endif
     }
   }

@@ -31,16 +31,16 @@
 
 // Found by least squares against truth, and by search, on the development scenes (docs/temporal.md).
 
-typedef struct EightStrengths {
+typedef struct Strengths {
   float8 sharpening;  // factor of the difference from the mean
   float8 along;       // factor of the second derivative along an edge
   float8 across;      // factor of that across it
-} EightStrengths;
+} Strengths;
 
 // As history stores them. Beyond the row's end its last texel repeats.
 static inline float8 confidences_at(HistoryLayer layer, int x, int y) {
   const int index = y * layer.width + x, last = (y + 1) * layer.width - 1;
-  if (index + 7 <= last) return confidences(load_history8(layer, index));
+  if (index + 7 <= last) return load_confidences8(layer, index);
   return (float8)(load_confidence(layer, index), load_confidence(layer, min(index + 1, last)),
                   load_confidence(layer, min(index + 2, last)), load_confidence(layer, min(index + 3, last)),
                   load_confidence(layer, min(index + 4, last)), load_confidence(layer, min(index + 5, last)),
@@ -48,21 +48,21 @@ static inline float8 confidences_at(HistoryLayer layer, int x, int y) {
 }
 
 // Returns the strengths for the pixels from (x, y) on.
-static inline EightStrengths strengths_at(HistoryLayer layer, int x, int y) {
+static inline Strengths strengths_at(HistoryLayer layer, int x, int y) {
   const float8 stored = confidences_at(layer, x, y), known = fabs(stored), zero = (float8)(0.0f);
   const int8 layered = as_int8(stored) >> 31;
   const float8 sharpening = SHARPENING + SHARPENING_NEW / (known + SHARPENING_NEW_CONFIDENCE);
   const float8 along = EDGE_SMOOTHING + EDGE_SMOOTHING_NEW / (known + EDGE_SMOOTHING_NEW_CONFIDENCE);
-  const EightStrengths strengths = {select(sharpening, zero, layered),
+  const Strengths strengths = {select(sharpening, zero, layered),
                                     select(along, (float8)(EDGE_SMOOTHING_LAYERED), layered),
                                     select(zero, (float8)(EDGE_SHARPENING_LAYERED), layered)};
   return strengths;
 }
 
 // Edges at eight pixels: K cos 2a, K sin 2a and K, with a the direction across the edge.
-typedef struct EightEdges {
+typedef struct Edges {
   float8 cosine, sine, coherence;
-} EightEdges;
+} Edges;
 
 // The sum over 3x3 texels, weighted (1 2 1) by (1 2 1) / 16.
 static inline float8 around_pixels(float16 above, float16 same, float16 below) {
@@ -75,7 +75,7 @@ static inline float16 slope_x(float16 luma) {
 }
 
 // Returns the edges in the five rows of luma around the pixels.
-static inline EightEdges edges_of(const ToneRow* rows) {
+static inline Edges edges_of(const ToneRow* rows) {
   const float16 x0 = slope_x(rows[1].luma), x1 = slope_x(rows[2].luma), x2 = slope_x(rows[3].luma);
   const float16 y0 = 0.5f * (rows[2].luma - rows[0].luma), y1 = 0.5f * (rows[3].luma - rows[1].luma);
   const float16 y2 = 0.5f * (rows[4].luma - rows[2].luma);
@@ -84,13 +84,13 @@ static inline EightEdges edges_of(const ToneRow* rows) {
   const float8 xy = around_pixels(x0 * y0, x1 * y1, x2 * y2);
   const float8 scale = 1.0f / (xx + yy + EDGE_GRADIENT_FLOOR);
   const float8 cosine = (xx - yy) * scale, sine = 2.0f * xy * scale;
-  const EightEdges edges = {cosine, sine, sqrt(cosine * cosine + sine * sine)};
+  const Edges edges = {cosine, sine, sqrt(cosine * cosine + sine * sine)};
   return edges;
 }
 
 // One channel of the pixels.
-static inline float8 refined(float16 above, float16 same, float16 below, EightEdges edges,
-                             EightStrengths by) {
+static inline float8 refined(float16 above, float16 same, float16 below, Edges edges,
+                             Strengths by) {
   const float16 beside = above + below, apart = below - above, column = beside + same;
   const float16 low = min(min(above, below), same), high = max(max(above, below), same);
   const float8 own = at_pixels(same);
@@ -109,9 +109,9 @@ static inline float8 refined(float16 above, float16 same, float16 below, EightEd
 }
 
 // Refines the pixels from (x, y) on, with the five rows around theirs.
-static inline void refine_row(const ToneRow* rows, LightRow light, EightStrengths by, RESOLVED_TEXELS source,
+static inline void refine_row(const ToneRow* rows, LightRow light, Strengths by, RESOLVED_TEXELS source,
                               OUTPUT_TEXELS output, const RefineParams* params, int x, int y) {
-  const EightEdges edges = edges_of(rows);
+  const Edges edges = edges_of(rows);
   const float8 red = refined(rows[1].red, rows[2].red, rows[3].red, edges, by);
   const float8 green = refined(rows[1].green, rows[2].green, rows[3].green, edges, by);
   const float8 blue = refined(rows[1].blue, rows[2].blue, rows[3].blue, edges, by);

@@ -46,7 +46,7 @@ static inline bool run_is_inside(int x, int width) {
 
 static inline float8 load_every_other_depth(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width) {
 #if SOURCE_STORAGE == BUFFER
-  if (ON_CPU && run_is_inside(x, width)) return vload16(0, texels + texel_index(layout, x, y)).even;
+  if (LANES == 8 && run_is_inside(x, width)) return vload16(0, texels + texel_index(layout, x, y)).even;
 #endif
   const int8 column = clamp(every_other(x), (int8)(0), (int8)(width - 1));
   return (float8)(load_depth4(texels, layout, column.lo, y), load_depth4(texels, layout, column.hi, y));
@@ -59,11 +59,11 @@ static inline VelocityBits load_every_other_velocity(VELOCITY_TEXELS texels, Tex
   return as_ulong8((float16)(load_velocity4(texels, layout, i.lo, y), load_velocity4(texels, layout, i.hi, y)));
 #elif VELOCITY_FORMAT == HALF
   __global const uint* row = (__global const uint*)texels + row_index(layout, y);
-  if (ON_CPU && run_is_inside(x, width)) return vload16(0, row + x).even;
+  if (LANES == 8 && run_is_inside(x, width)) return vload16(0, row + x).even;
   return (uint8)(row[i.s0], row[i.s1], row[i.s2], row[i.s3], row[i.s4], row[i.s5], row[i.s6], row[i.s7]);
 #else
   __global const ulong* row = (__global const ulong*)texels + row_index(layout, y);
-  if (ON_CPU && run_is_inside(x, width)) return vload16(0, row + x).even;
+  if (LANES == 8 && run_is_inside(x, width)) return vload16(0, row + x).even;
   return (ulong8)(row[i.s0], row[i.s1], row[i.s2], row[i.s3], row[i.s4], row[i.s5], row[i.s6], row[i.s7]);
 #endif
 }
@@ -76,7 +76,7 @@ static inline uint8 load_every_other_reactive(REACTIVE_TEXELS texels, TexelLayou
   return convert_uint8(values * 255.0f + 0.5f);
 #else
   __global const uchar* row = texels + row_index(layout, y);
-  if (ON_CPU && run_is_inside(x, width)) return convert_uint8(vload16(0, row + x).even);
+  if (LANES == 8 && run_is_inside(x, width)) return convert_uint8(vload16(0, row + x).even);
   return (uint8)(row[i.s0], row[i.s1], row[i.s2], row[i.s3], row[i.s4], row[i.s5], row[i.s6], row[i.s7]);
 #endif
 }
@@ -96,7 +96,7 @@ static inline ColourBits load_every_other_colour(COLOUR_TEXELS texels, TexelLayo
   return bits;
 #else
   COLOUR_WORDS row = (COLOUR_WORDS)texels + row_index(layout, y);
-  if (ON_CPU && run_is_inside(x, width)) return vload16(0, row + x).even;
+  if (LANES == 8 && run_is_inside(x, width)) return vload16(0, row + x).even;
   return (ColourBits)(row[i.s0], row[i.s1], row[i.s2], row[i.s3], row[i.s4], row[i.s5], row[i.s6], row[i.s7]);
 #endif
 }

@@ -7,9 +7,6 @@
 
 #define LEAST_DIFFERENCE 1e-12f    // squared: two pairs that are equal count alike
 
-// Each of four lanes four times, for the channels of four pixels.
-#define OF_FOUR(lanes) lanes.s0000111122223333
-
 static inline int16 non_finite_channels(float16 value) {
   return (as_int16(value) & 0x7fffffff) >= NON_FINITE_BITS;
 }
@@ -115,7 +112,7 @@ IN_REGISTERS static inline EightColours previous_colours(const CheckerboardParam
                                                          Places places) {
   const float8 column = places.column.fraction, row = places.row.fraction;
 #if SOURCE_STORAGE == BUFFER
-  if (ON_CPU && places.are_a_run) {
+  if (LANES == 8 && places.are_a_run) {
     const int x = places.column.low.s0, above = upper_row(params, places), below = lower_row(params, places);
     const TexelLayout layout = params->previous_colour;
     const ColourRun upper = load_colour_run(previous, layout, x, above);

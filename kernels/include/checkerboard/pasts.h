@@ -272,7 +272,7 @@ static inline float8 mix_depths(float8 low, float8 high, float8 fraction) {
 static inline float8 depth_between(const CheckerboardParams* params, DEPTH_TEXELS depth, Places places) {
   const TexelLayout layout = params->previous_depth;
 #if SOURCE_STORAGE == BUFFER
-  if (ON_CPU && places.are_a_run) {
+  if (LANES == 8 && places.are_a_run) {
     const float16 upper = vload16(0, depth + texel_index(layout, places.column.low.s0, upper_row(params, places)));
     const float16 lower = vload16(0, depth + texel_index(layout, places.column.low.s0, lower_row(params, places)));
     const float8 held = mix_depths(mix_depths(upper.even, upper.odd, places.column.fraction),

@@ -7,59 +7,59 @@
 #include "layers/past_layers.h"
 #include "temporal/constants.h"
 
-// Layers of history that eight pixels want.
+// Layers of history that pixels want.
 typedef struct LayerWishes {
   LayerKind kind;
-  int8 is_split;                 // lanes with two layers
-  float8 near_depth, far_depth;  // for a surface alone its own depth and any
+  LaneMask is_split;             // lanes with two layers
+  LaneFloat near_depth, far_depth;  // for a surface alone its own depth and any
   float least_part, most_part;   // fractions of a near layer's depth: texels within that range show the same thing
 } LayerWishes;
 
 // Premultiplied colours and coverages, by channel.
 typedef struct LayerColours {
-  Lanes red, green, blue, coverage;
-  Lanes alpha;  // with ALPHA: of the far layer; a near one is opaque where it covers
+  LaneFloat red, green, blue, coverage;
+  LaneFloat alpha;  // with ALPHA: of the far layer; a near one is opaque where it covers
 } LayerColours;
 
 // One texel of each pixel as the layer has it.
 typedef struct LayerTaps {
   LayerColours colours;
-  Lanes confidence;
-  LaneBits has_two;  // it has two layers
-  LaneBits valid;    // it has the surface that is wished for, or says that nothing of it is there
+  LaneFloat confidence;
+  LaneMask has_two;  // it has two layers
+  LaneMask valid;    // it has the surface that is wished for, or says that nothing of it is there
 } LayerTaps;
 
-static inline LaneBits are_alike(Lanes a, Lanes b, float tolerance) {
+static inline LaneMask are_alike(LaneFloat a, LaneFloat b, float tolerance) {
   return fabs(a - b) <= tolerance * max(a, b);
 }
 
 // Looks for far layers, and for surfaces alone, in a column of the pixels' neighbourhoods. `tests_depth`: lanes of
 // surfaces alone whose texels of one layer must not be nearer, as no trust tells.
-static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWishes* wishes, LaneBits tests_depth) {
-  const Lanes far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
-  const Lanes stored = in_column(row->far.last, column), coverage = in_column(row->near.last, column);
-  const Lanes confidence = min(fabs(stored), CONFIDENCE_MAX);
-  const LaneBits split = LANES_OF(wishes->is_split), two = AS_LANE_BITS(stored) >> 31;
-  const Lanes wanted = select(LANES_OF(wishes->near_depth), LANES_OF(wishes->far_depth), split);
-  const LaneBits is_near = two & (wanted > 0.5f * (far_depth + near_depth));
-  const Lanes shown = select(far_depth, near_depth, is_near);
-  const LaneBits known = confidence > 0.0f;
+static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWishes* wishes, LaneMask tests_depth) {
+  const LaneFloat far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
+  const LaneFloat stored = in_column(row->far.last, column), coverage = in_column(row->near.last, column);
+  const LaneFloat confidence = min(fabs(stored), CONFIDENCE_MAX);
+  const LaneMask split = wishes->is_split, two = as_lane_int(stored) < 0;
+  const LaneFloat wanted = select(wishes->near_depth, wishes->far_depth, split);
+  const LaneMask is_near = two & (wanted > 0.5f * (far_depth + near_depth));
+  const LaneFloat shown = select(far_depth, near_depth, is_near);
+  const LaneMask known = confidence > 0.0f;
 
-  const LaneBits far_valid = (shown >= wanted * (1.0f - FAR_DEPTH_STEP_MAX)) &
-                         (shown <= 0.5f * (LANES_OF(wishes->near_depth) + LANES_OF(wishes->far_depth))) &
+  const LaneMask far_valid = (shown >= wanted * (1.0f - FAR_DEPTH_STEP_MAX)) &
+                         (shown <= 0.5f * (wishes->near_depth + wishes->far_depth)) &
                          select(known, coverage >= NEAR_COVERAGE_MIN, is_near);
-  const LaneBits alone_valid = select(~tests_depth | (far_depth <= wanted * (1.0f + FAR_DEPTH_STEP_MAX)),
+  const LaneMask alone_valid = select(mask_not(tests_depth) | (far_depth <= wanted * (1.0f + FAR_DEPTH_STEP_MAX)),
                                   select(known & are_alike(shown, wanted, FAR_DEPTH_STEP_MAX),
                                          are_alike(shown, wanted, NEAR_DEPTH_STEP_MAX), is_near), two);
 
   // Behind another surface only the colour of a near layer is wanted.
-  const Lanes whole = select((Lanes)(1.0f), 1.0f / max(coverage, (Lanes)(NEAR_COVERAGE_MIN)), split);
+  const LaneFloat whole = select((LaneFloat)(1.0f), 1.0f / max(coverage, (LaneFloat)(NEAR_COVERAGE_MIN)), split);
   LayerTaps taps;
   taps.colours.red = select(in_column(row->far.red, column), in_column(row->near.red, column) * whole, is_near);
   taps.colours.green = select(in_column(row->far.green, column), in_column(row->near.green, column) * whole, is_near);
   taps.colours.blue = select(in_column(row->far.blue, column), in_column(row->near.blue, column) * whole, is_near);
-  taps.colours.coverage = select((Lanes)(1.0f), coverage, is_near & ~split);
-  taps.colours.alpha = select(in_column(row->alpha, column), (Lanes)(1.0f), is_near);
+  taps.colours.coverage = select((LaneFloat)(1.0f), coverage, is_near & mask_not(split));
+  taps.colours.alpha = select(in_column(row->alpha, column), (LaneFloat)(1.0f), is_near);
   taps.confidence = select(confidence, in_column(row->near_confidence, column) * coverage, is_near);
   taps.has_two = two;
   taps.valid = select(alone_valid, far_valid, split);
@@ -68,15 +68,15 @@ static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWis
 
 // Looks for near layers.
 static inline LayerTaps near_taps(const LayerRow* row, int column, const LayerWishes* wishes) {
-  const Lanes far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
-  const Lanes stored = in_column(row->far.last, column);
-  const Lanes confidence = min(fabs(stored), CONFIDENCE_MAX);
-  const LaneBits two = AS_LANE_BITS(stored) >> 31;
-  const LaneBits is_near = two & (LANES_OF(wishes->near_depth) > 0.5f * (far_depth + near_depth));
-  const Lanes shown = select(far_depth, near_depth, is_near);
-  const LaneBits is_ours = (shown > 0.5f * (LANES_OF(wishes->near_depth) + LANES_OF(wishes->far_depth))) &
-                       (shown >= LANES_OF(wishes->near_depth) * wishes->least_part);
-  const Lanes none = (Lanes)(0.0f), empty = min(confidence, EMPTY_CONFIDENCE_MAX);
+  const LaneFloat far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
+  const LaneFloat stored = in_column(row->far.last, column);
+  const LaneFloat confidence = min(fabs(stored), CONFIDENCE_MAX);
+  const LaneMask two = as_lane_int(stored) < 0;
+  const LaneMask is_near = two & (wishes->near_depth > 0.5f * (far_depth + near_depth));
+  const LaneFloat shown = select(far_depth, near_depth, is_near);
+  const LaneMask is_ours = (shown > 0.5f * (wishes->near_depth + wishes->far_depth)) &
+                       (shown >= wishes->near_depth * wishes->least_part);
+  const LaneFloat none = (LaneFloat)(0.0f), empty = min(confidence, EMPTY_CONFIDENCE_MAX);
   const LayerChannels *far = &row->far, *near = &row->near;
 
   LayerTaps taps;
@@ -85,16 +85,16 @@ static inline LayerTaps near_taps(const LayerRow* row, int column, const LayerWi
       select(none, select(in_column(far->green, column), in_column(near->green, column), is_near), is_ours);
   taps.colours.blue =
       select(none, select(in_column(far->blue, column), in_column(near->blue, column), is_near), is_ours);
-  taps.colours.coverage = select(none, select((Lanes)(1.0f), in_column(near->last, column), is_near), is_ours);
-  taps.colours.alpha = (Lanes)(1.0f);
-  taps.confidence = select(select(empty, confidence, is_ours & ~two), in_column(row->near_confidence, column),
+  taps.colours.coverage = select(none, select((LaneFloat)(1.0f), in_column(near->last, column), is_near), is_ours);
+  taps.colours.alpha = (LaneFloat)(1.0f);
+  taps.confidence = select(select(empty, confidence, is_ours & mask_not(two)), in_column(row->near_confidence, column),
                            is_ours & is_near);
   taps.has_two = two;
-  taps.valid = shown <= LANES_OF(wishes->near_depth) * wishes->most_part;  // nothing stood before it
+  taps.valid = shown <= wishes->near_depth * wishes->most_part;  // nothing stood before it
   return taps;
 }
 
-static inline LayerTaps taps_of(const LayerRow* row, int column, const LayerWishes* wishes, LaneBits was_split) {
+static inline LayerTaps taps_of(const LayerRow* row, int column, const LayerWishes* wishes, LaneMask was_split) {
   return wishes->kind == kNearLayer ? near_taps(row, column, wishes) : far_taps(row, column, wishes, was_split);
 }
 
@@ -103,27 +103,27 @@ static inline LayerTaps taps_of(const LayerRow* row, int column, const LayerWish
 typedef struct LayerSums {
   LayerColours cubic, bilinear;  // over the valid taps
   LayerColours least, most;      // range of the valid ones of the middle four
-  Lanes weight, middle_weight;  // sums over the valid taps
-  Lanes confidence;             // bilinear; an invalid tap is not known
+  LaneFloat weight, middle_weight;  // sums over the valid taps
+  LaneFloat confidence;             // bilinear; an invalid tap is not known
   // Confidence of all taps as it is stored, for pixels without a texel of two layers.
-  Lanes stored, least_stored, most_stored;
-  LaneBits has_two;                  // a tap has two layers
+  LaneFloat stored, least_stored, most_stored;
+  LaneMask has_two;             // a tap has two layers
 } LayerSums;
 
 static inline LayerColours all_colours(float value) {
-  const Lanes all = (Lanes)(value);
+  const LaneFloat all = (LaneFloat)(value);
   const LayerColours colours = {all, all, all, all, all};
   return colours;
 }
 
 static inline LayerSums no_taps(void) {
-  const Lanes none = (Lanes)(0.0f);
+  const LaneFloat none = (LaneFloat)(0.0f);
   const LayerSums sums = {all_colours(0.0f), all_colours(0.0f), all_colours(FLT_MAX), all_colours(-FLT_MAX),
-                          none, none, none, none, (Lanes)(FLT_MAX), (Lanes)(-FLT_MAX), (LaneBits)(0)};
+                          none, none, none, none, (LaneFloat)(FLT_MAX), (LaneFloat)(-FLT_MAX), mask_of(false)};
   return sums;
 }
 
-static inline void add_colours(LayerColours* sum, const LayerColours* colours, Lanes weight) {
+static inline void add_colours(LayerColours* sum, const LayerColours* colours, LaneFloat weight) {
   sum->red += colours->red * weight;
   sum->green += colours->green * weight;
   sum->blue += colours->blue * weight;
@@ -134,7 +134,7 @@ static inline void add_colours(LayerColours* sum, const LayerColours* colours, L
 }
 
 // Takes `chosen` in `lanes`, `otherwise` in the others.
-static inline LayerColours select_colours(LayerColours otherwise, LayerColours chosen, LaneBits lanes) {
+static inline LayerColours select_colours(LayerColours otherwise, LayerColours chosen, LaneMask lanes) {
   const LayerColours colours = {
       select(otherwise.red, chosen.red, lanes), select(otherwise.green, chosen.green, lanes),
       select(otherwise.blue, chosen.blue, lanes), select(otherwise.coverage, chosen.coverage, lanes),
@@ -155,8 +155,8 @@ static inline LayerColours max_colours(LayerColours a, LayerColours b) {
 }
 
 // Adds a texel of each pixel with its weight in the cubic.
-static inline void add_taps(LayerSums* sums, const LayerTaps* taps, Lanes weight) {
-  const Lanes counted = select((Lanes)(0.0f), weight, taps->valid);
+static inline void add_taps(LayerSums* sums, const LayerTaps* taps, LaneFloat weight) {
+  const LaneFloat counted = select((LaneFloat)(0.0f), weight, taps->valid);
   add_colours(&sums->cubic, &taps->colours, counted);
   sums->weight += counted;
   sums->stored += taps->confidence * weight;
@@ -164,9 +164,9 @@ static inline void add_taps(LayerSums* sums, const LayerTaps* taps, Lanes weight
 }
 
 // Adds one of the middle four, too, with its weight in the bilinear blend.
-static inline void add_middle_taps(LayerSums* sums, const LayerTaps* taps, Lanes weight) {
-  const LaneBits valid = taps->valid;
-  const Lanes counted = select((Lanes)(0.0f), weight, valid);
+static inline void add_middle_taps(LayerSums* sums, const LayerTaps* taps, LaneFloat weight) {
+  const LaneMask valid = taps->valid;
+  const LaneFloat counted = select((LaneFloat)(0.0f), weight, valid);
   add_colours(&sums->bilinear, &taps->colours, counted);
   sums->middle_weight += counted;
   sums->confidence += taps->confidence * counted;
@@ -178,11 +178,11 @@ static inline void add_middle_taps(LayerSums* sums, const LayerTaps* taps, Lanes
 
 // Blends one channel: the cubic, held in the range of the middle four; bilinear where the cubic has lost most of its
 // weights; `nothing` where the middle four have lost theirs.
-static inline Lanes blend_channel(Lanes cubic, Lanes bilinear, Lanes least, Lanes most,
+static inline LaneFloat blend_channel(LaneFloat cubic, LaneFloat bilinear, LaneFloat least, LaneFloat most,
                                       const LayerSums* sums, float nothing) {
-  const Lanes held = min(max(cubic / sums->weight, least), most);
-  const Lanes blended = select(held, bilinear / sums->middle_weight, sums->weight < CUBIC_WEIGHT_MIN);
-  return select(blended, (Lanes)(nothing), sums->middle_weight < BILINEAR_WEIGHT_MIN);
+  const LaneFloat held = min(max(cubic / sums->weight, least), most);
+  const LaneFloat blended = select(held, bilinear / sums->middle_weight, sums->weight < CUBIC_WEIGHT_MIN);
+  return select(blended, (LaneFloat)(nothing), sums->middle_weight < BILINEAR_WEIGHT_MIN);
 }
 
 static inline LayerColours blend_colours(const LayerSums* sums) {
@@ -192,7 +192,7 @@ static inline LayerColours blend_colours(const LayerSums* sums) {
   colours.green = blend_channel(cubic->green, bilinear->green, least->green, most->green, sums, 0.0f);
   colours.blue = blend_channel(cubic->blue, bilinear->blue, least->blue, most->blue, sums, 0.0f);
   colours.coverage = blend_channel(cubic->coverage, bilinear->coverage, least->coverage, most->coverage, sums, 0.0f);
-  colours.alpha = (Lanes)(1.0f);
+  colours.alpha = (LaneFloat)(1.0f);
 #if ALPHA
   colours.alpha = blend_channel(cubic->alpha, bilinear->alpha, least->alpha, most->alpha, sums, 1.0f);
 #endif
@@ -201,8 +201,8 @@ static inline LayerColours blend_colours(const LayerSums* sums) {
 
 // Blends confidence: that of surfaces alone among texels of one layer by the cubic, as in resolve_temporal; else
 // bilinear.
-static inline Lanes blend_confidence(const LayerSums* sums, LaneBits is_alone) {
-  const Lanes cubic = clamp(min(max(sums->stored, sums->least_stored), sums->most_stored), 0.0f, CONFIDENCE_MAX);
-  const Lanes known = select(sums->confidence, (Lanes)(0.0f), sums->middle_weight < BILINEAR_WEIGHT_MIN);
-  return select(known, cubic, is_alone & ~sums->has_two);
+static inline LaneFloat blend_confidence(const LayerSums* sums, LaneMask is_alone) {
+  const LaneFloat cubic = clamp(min(max(sums->stored, sums->least_stored), sums->most_stored), 0.0f, CONFIDENCE_MAX);
+  const LaneFloat known = select(sums->confidence, (LaneFloat)(0.0f), sums->middle_weight < BILINEAR_WEIGHT_MIN);
+  return select(known, cubic, is_alone & mask_not(sums->has_two));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A history of two layers: its texels, and rows of them. A row has twelve texels where eight pixels see it
-// between texels, and eight where they see it on texels. All may lie anywhere and are clamped to the edge.
+// A history of two layers: its texels, and rows of them. Eight pixels see twelve texels of a row between texels, and
+// eight on texels; one pixel sees four. All may lie anywhere and are clamped to the edge.
 #pragma once
 
 #include "bits.h"
@@ -56,25 +56,18 @@ static inline LayerState load_state(__global const half* states, int index) {
   return state;
 }
 
-// Four states as they are stored.
-static inline float16 four_states(float4 far, float4 near, float4 near_confidence) {
-  return (float16)(far.x, near.x, near_confidence.x, 0.0f, far.y, near.y, near_confidence.y, 0.0f,
-                   far.z, near.z, near_confidence.z, 0.0f, far.w, near.w, near_confidence.w, 0.0f);
-}
-
-// Stores the first `count` of eight.
-static inline void store_states(__global half* states, int index, int count, float8 far_depth, float8 near_depth,
-                                float8 near_confidence) {
-  const float8 far = sqrt(sqrt(far_depth)), near = sqrt(sqrt(near_depth));
-  const float16 left = four_states(far.lo, near.lo, near_confidence.lo);
-  const float16 right = four_states(far.hi, near.hi, near_confidence.hi);
-  if (count >= 8) {
-    store_half_texels4(states, index, left);
-    store_half_texels4(states, index + 4, right);
+// Stores the first `count`.
+static inline void store_states(__global half* states, int index, int count, LaneFloat far_depth, LaneFloat near_depth,
+                                LaneFloat near_confidence) {
+  LaneTexels rest = texels_of(sqrt(sqrt(far_depth)), sqrt(sqrt(near_depth)), near_confidence, (LaneFloat)(0.0f));
+#if LANES == 8
+  if (count >= kLanes) {
+    store_half_texels4(states, index, rest.left);
+    store_half_texels4(states, index + 4, rest.right);
     return;
   }
-  EightTexels rest = {left, right};
-  for (int i = 0; i < min(count, 8); ++i) {
+#endif
+  for (int i = 0; i < min(count, (int)kLanes); ++i) {
     vstore_half4_rte(first_texel(rest), index + i, states);
     rest = push_texel(rest, first_texel(rest));
   }
@@ -130,7 +123,7 @@ static inline TexelWindow window_at(const PastLayers* past, int x, int y, int ro
 
 // Loads four texels of a row of the window, counted from 0.
 static inline float16 load_row(HistoryLayer layer, TexelWindow window, int row) {
-  if (ON_CPU && window.is_inside) return load_history4(layer, (window.y + row) * layer.width + window.x);
+  if (LANES == 8 && window.is_inside) return load_history4(layer, (window.y + row) * layer.width + window.x);
   return load_clamped4(layer, window.x, window.y + row);
 }
 
@@ -170,10 +163,6 @@ static inline FourStates load_states(const PastLayers* past, DEPTH_TEXELS depth,
   return states;
 }
 
-static inline int16 to_four_masks(int4 lanes) {
-  return (int16)((int4)(lanes.x), (int4)(lanes.y), (int4)(lanes.z), (int4)(lanes.w));
-}
-
 // Loads four texels of the near layer's picture: premultiplied colours and coverages. A texel of one layer covers
 // wholly if it lies before `between`, else not at all.
 static inline float16 load_near_row(const PastLayers* past, DEPTH_TEXELS depth, float between, TexelWindow window,
@@ -184,9 +173,9 @@ static inline float16 load_near_row(const PastLayers* past, DEPTH_TEXELS depth, 
   if (!all(two)) {
     const FourStates states = load_states(past, depth, window, row);
     const float16 covering = select(far, (float16)(1.0f), LAST_CHANNELS);
-    near = select(near, covering, to_four_masks(states.far_depth > between));
+    near = select(near, covering, OF_FOUR(states.far_depth > between));
   }
-  if (any(two)) near = select(near, load_row(past->near, window, row), to_four_masks(two));
+  if (any(two)) near = select(near, load_row(past->near, window, row), OF_FOUR(two));
   return near;
 }
 
@@ -214,7 +203,7 @@ static inline RowWindows windows_from(const PastLayers* past, int x, int y, int 
   return windows;
 }
 
-#if ON_CPU
+#if LANES == 8
 typedef float16 RowFloats;  // twelve texels; the last four lanes are not used, or eight where there is no third window
 #else
 typedef float4 RowFloats;
@@ -234,7 +223,7 @@ typedef struct LayerRow {
 
 // Returns a row without its first four texels, and with four more after the others, which fill the rest.
 static inline RowFloats push_four(RowFloats row, float4 texels) {
-#if ON_CPU
+#if LANES == 8
   return (float16)(row.s4567, row.s89ab, texels, texels);
 #else
   return texels;
@@ -254,7 +243,7 @@ static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth
   FourStates states = {none.s0123, none.s0123, none.s0123};
   float4 alpha = none.s0123;
   UNROLL(3)
-  for (int i = 0; i < (ON_CPU ? 3 : 1); ++i) {
+  for (int i = 0; i < (LANES == 8 ? 3 : 1); ++i) {
     if (i < 2 || windows.has_third) {
       const TexelWindow window = i == 0 ? windows.first : i == 1 ? windows.second : windows.third;
       far = load_row(past->far, window, row);
@@ -273,8 +262,8 @@ static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth
 }
 
 // Returns what the pixels that are sampled see in the same column of their neighbourhoods, 0 to 3.
-static inline Lanes in_column(RowFloats row, int column) {
-#if ON_CPU
+static inline LaneFloat in_column(RowFloats row, int column) {
+#if LANES == 8
   if (column == 0) return row.s01234567;
   if (column == 1) return row.s12345678;
   return column == 2 ? row.s23456789 : row.s3456789a;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Adds this frame's samples to the layers of eight pixels of a row.
+// Adds this frame's samples to the layers of pixels of a row.
 //   The far layer, or the only one of a pixel, takes the steps of resolve_temporal.
 //   The near layer follows the near surface. A sample of the far surface is one of coverage 0.
 #pragma once
@@ -16,36 +16,30 @@
 
 // ---- Pixels as this frame's samples around them say.
 
-// Eight pixels as the samples nearest to them say.
+// Pixels as the samples nearest to them say.
 typedef struct LayeredPixels {
-  int8 is_split;                 // lanes with two layers
-  float8 near_depth, far_depth;  // depths of their layers; for a surface alone the near one is its own
-  float8 motion_x, motion_y;     // motion of the near layer
-  float8 between;                // a depth between the layers
-  float8 depth;                  // the sample's own
-  float8 open_trust;
+  LaneMask is_split;                // lanes with two layers
+  LaneFloat near_depth, far_depth;  // depths of their layers; for a surface alone the near one is its own
+  LaneFloat motion_x, motion_y;     // motion of the near layer
+  LaneFloat between;                // a depth between the layers
+  LaneFloat depth;                  // the sample's own
+  LaneFloat open_trust;
 } LayeredPixels;
 
 static inline LayeredPixels find_layers(DEPTH_TEXELS depth, TexelLayout layout, const TemporalParams* params,
                                         __global const LayerSplit* splits, __global const float* open_trust,
                                         const NearestSamples* nearest) {
-  const int8 x = nearest->x;
   const int first = nearest->y * params->frame0.width;
-  __global const float* split = (__global const float*)(splits + first);
-  __global const float* trust = open_trust + first;
-  const float4 s0 = vload4(x.s0, split), s1 = vload4(x.s1, split), s2 = vload4(x.s2, split), s3 = vload4(x.s3, split);
-  const float4 s4 = vload4(x.s4, split), s5 = vload4(x.s5, split), s6 = vload4(x.s6, split), s7 = vload4(x.s7, split);
-  const float8 near = (float8)(s0.x, s1.x, s2.x, s3.x, s4.x, s5.x, s6.x, s7.x);
+  const LaneFloat4 split = gather4((__global const float*)(splits + first), nearest->x);
   LayeredPixels pixels;
-  pixels.depth = (float8)(load_depth4(depth, layout, x.lo, nearest->y), load_depth4(depth, layout, x.hi, nearest->y));
-  pixels.is_split = near > 0.0f;
-  pixels.near_depth = select(pixels.depth, near, pixels.is_split);
-  pixels.far_depth = (float8)(s0.y, s1.y, s2.y, s3.y, s4.y, s5.y, s6.y, s7.y);
-  pixels.motion_x = (float8)(s0.z, s1.z, s2.z, s3.z, s4.z, s5.z, s6.z, s7.z);
-  pixels.motion_y = (float8)(s0.w, s1.w, s2.w, s3.w, s4.w, s5.w, s6.w, s7.w);
-  pixels.between = 0.5f * (near + pixels.far_depth);
-  pixels.open_trust = max((float8)(trust[x.s0], trust[x.s1], trust[x.s2], trust[x.s3], trust[x.s4], trust[x.s5],
-                                   trust[x.s6], trust[x.s7]), (float8)(0.0f));
+  pixels.depth = load_depth_lanes(depth, layout, nearest->x, nearest->y);
+  pixels.is_split = split.x > 0.0f;
+  pixels.near_depth = select(pixels.depth, split.x, pixels.is_split);
+  pixels.far_depth = split.y;
+  pixels.motion_x = split.z;
+  pixels.motion_y = split.w;
+  pixels.between = 0.5f * (split.x + pixels.far_depth);
+  pixels.open_trust = max(gather(open_trust + first, nearest->x), (LaneFloat)(0.0f));
   return pixels;
 }
 
@@ -66,8 +60,9 @@ static inline LayerWishes near_wishes_of(const LayeredPixels* pixels, bool may_c
 }
 
 // Returns where the pixels from (x, y) on come from, with a phase and motions.
-static inline LayerPlaces places_from(int x, int y, float phase_x, float phase_y, float8 motion_x, float8 motion_y) {
-  const float8 columns = (float8)(0.5f, 1.5f, 2.5f, 3.5f, 4.5f, 5.5f, 6.5f, 7.5f);
+static inline LayerPlaces places_from(int x, int y, float phase_x, float phase_y, LaneFloat motion_x,
+                                      LaneFloat motion_y) {
+  const LaneFloat columns = to_lane_float(LANE_NUMBERS) + 0.5f;
   const LayerPlaces places = {((float)x + columns + phase_x) + motion_x, ((float)y + 0.5f + phase_y) + motion_y};
   return places;
 }
@@ -106,7 +101,8 @@ static inline Seed seed_of_layer(const SeedSamples* in, COLOUR_TEXELS colour, DE
       if (is_far) sample = (float4)(0.0f);
     }
     const float away_x = (float)column - in->from_x, away_y = (float)row - in->from_y;
-    const float weight = bell((float8)((away_x * away_x + away_y * away_y) * SEED_FALLOFF)).s0 * luma_weight(sample);
+    const LaneFloat near = bell((LaneFloat)((away_x * away_x + away_y * away_y) * SEED_FALLOFF));
+    const float weight = FIRST_LANE(near) * luma_weight(sample);
     sum += sample * weight;
     weights += weight;
   }
@@ -116,24 +112,25 @@ static inline Seed seed_of_layer(const SeedSamples* in, COLOUR_TEXELS colour, DE
 
 // Reseeds the layers of `lanes` with samples of theirs. A far layer stays what it is where there is none. Returns their
 // inertia: how much each resists this frame's sample, as a weight.
-static inline float8 reseed_layer(LayerKind kind, int8 lanes, const LayeredPixels* pixels, COLOUR_TEXELS colour,
-                                  DEPTH_TEXELS depth, TexelLayout layout, const SourceFrame* frame,
-                                  const NearestSamples* nearest, EightTexels* history, float8* alpha, float8* known) {
-  float8 inertia = (float8)(0.0f), between = pixels->between, from_x = nearest->from_x;
-  int8 x = nearest->x;
+static inline LaneFloat reseed_layer(LayerKind kind, LaneMask lanes, const LayeredPixels* pixels, COLOUR_TEXELS colour,
+                                     DEPTH_TEXELS depth, TexelLayout layout, const SourceFrame* frame,
+                                     const NearestSamples* nearest, LaneTexels* history, LaneFloat* alpha,
+                                     LaneFloat* known) {
+  LaneFloat inertia = (LaneFloat)(0.0f), between = pixels->between, from_x = nearest->from_x;
+  LaneInt x = nearest->x;
   for (int i = 0; i < kLanes; ++i) {
     float4 texel = first_texel(*history);
-    if (lanes.s0 != 0) {
-      const SeedSamples samples = {*frame, layout, x.s0, nearest->y, from_x.s0, nearest->from_y};
-      const Seed seed = seed_of_layer(&samples, colour, depth, kind, between.s0);
+    if (FIRST_LANE(lanes)) {
+      const SeedSamples samples = {*frame, layout, FIRST_LANE(x), nearest->y, FIRST_LANE(from_x), nearest->from_y};
+      const Seed seed = seed_of_layer(&samples, colour, depth, kind, FIRST_LANE(between));
       if (seed.any || kind == kNearLayer) {
-        const float share = 1.0f - known->s0 / CONFIDENCE_MIN;
+        const float share = 1.0f - FIRST_LANE(*known) / CONFIDENCE_MIN;
         texel += (seed.mean - texel) * share;
 #if ALPHA
-        alpha->s0 += (seed.mean.w - alpha->s0) * share;
+        FIRST_LANE(*alpha) += (seed.mean.w - FIRST_LANE(*alpha)) * share;
 #endif
-        inertia.s0 = SEED_INERTIA * share;
-        known->s0 = seed.any ? CONFIDENCE_MIN : 0.0f;
+        FIRST_LANE(inertia) = SEED_INERTIA * share;
+        FIRST_LANE(*known) = seed.any ? CONFIDENCE_MIN : 0.0f;
       }
     }
     *history = push_texel(*history, texel);
@@ -160,10 +157,10 @@ typedef struct BothLayers {
   FetchedLayers far, near;  // far or only ones; the near ones only where a pixel has two
 } BothLayers;
 
-// Fetches the layers of the pixels from (x, y) on. Unrolled: a real loop would carry all eight
-// lanes as live values from one round to the next.
+// Fetches the layers of the pixels from (x, y) on. Unrolled: a real loop would carry all lanes
+// as live values from one round to the next.
 static inline BothLayers fetch_both(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
-                                    TileReprojection tile, LayerTile layer, const EightReprojections* motion, int x,
+                                    TileReprojection tile, LayerTile layer, const Reprojections* motion, int x,
                                     int y) {
   BothLayers both;
   UNROLL_ALWAYS(2)
@@ -176,7 +173,7 @@ static inline BothLayers fetch_both(const LayeredPixels* pixels, const PastLayer
         is_far ? places_from(x, y, tile.phase_x, tile.phase_y, motion->x, motion->y)
                : places_from(x, y, layer.phase_x, layer.phase_y, pixels->motion_x, pixels->motion_y);
     both.near.from = find_sources(past, depth1, &wishes, place, is_far ? tile.is_rigid : layer.is_rigid);
-    both.near.known = fetch_layers(past, depth1, &wishes, &both.near.from, is_far ? (int8)(-1) : pixels->is_split);
+    both.near.known = fetch_layers(past, depth1, &wishes, &both.near.from, is_far ? mask_of(true) : pixels->is_split);
     if (is_far) both.far = both.near;
   }
   return both;
@@ -185,46 +182,43 @@ static inline BothLayers fetch_both(const LayeredPixels* pixels, const PastLayer
 // ---- Far layers.
 
 // Returns them as resolve_temporal fetches them. Layers answer for depth, so trust is open where there are or were two.
-static inline FetchedHistory known_far(const LayeredPixels* pixels, const FetchedLayers* far,
-                                         EightReprojections* motion) {
+static inline FetchedHistory known_far(const LayeredPixels* pixels, const FetchedLayers* far, Reprojections* motion) {
   const KnownLayers layers = far->known;
   motion->trust = select(motion->trust, pixels->open_trust, pixels->is_split | far->from.was_split);
 
-  const float8 coverage = confidences(layers.texels);
-  const int8 is_surface = coverage > NEAR_COVERAGE_MIN;
-  const float8 whole = select((float8)(0.0f), 1.0f / coverage, is_surface);
-  const FetchedHistory fetched = {
-      {layers.texels.left * to_four_texels(whole.lo), layers.texels.right * to_four_texels(whole.hi)},
-      select((float8)(0.0f), layers.confidence, is_surface),
-      far->from.fraction_x,
-      far->from.fraction_y};
+  const LaneFloat coverage = confidences(layers.texels);
+  const LaneMask is_surface = coverage > NEAR_COVERAGE_MIN;
+  const LaneFloat whole = select((LaneFloat)(0.0f), 1.0f / coverage, is_surface);
+  const FetchedHistory fetched = {times(layers.texels, whole),
+                                  select((LaneFloat)(0.0f), layers.confidence, is_surface),
+                                  far->from.fraction_x,
+                                  far->from.fraction_y};
   return fetched;
 }
 
 // Rectifies and reseeds, as correct_history. In a pixel with two layers, only reseeds the far one, with samples of it.
-static inline float8 correct_far(const LayeredPixels* pixels, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
-                                 TexelLayout layout, const SourceFrame* frame, const SampleMotion* sample_motion,
-                                 const NearestSamples* nearest, EightTexels* history, float8* alpha,
-                                 Evidence* evidence) {
-  const float8 inertia =
-      correct_history(colour, frame, sample_motion, nearest, ~pixels->is_split, history, alpha, evidence);
-  const int8 unknown = pixels->is_split & (evidence->confidence < CONFIDENCE_MIN);
+static inline LaneFloat correct_far(const LayeredPixels* pixels, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
+                                    TexelLayout layout, const SourceFrame* frame, const SampleMotion* sample_motion,
+                                    const NearestSamples* nearest, LaneTexels* history, LaneFloat* alpha,
+                                    Evidence* evidence) {
+  const LaneFloat inertia =
+      correct_history(colour, frame, sample_motion, nearest, mask_not(pixels->is_split), history, alpha, evidence);
+  const LaneMask unknown = pixels->is_split & (evidence->confidence < CONFIDENCE_MIN);
   if (!any_lane(unknown)) return inertia;
-  const float8 reseeded = reseed_layer(kFarLayer, unknown, pixels, colour, depth, layout, frame, nearest, history,
+  const LaneFloat reseeded = reseed_layer(kFarLayer, unknown, pixels, colour, depth, layout, frame, nearest, history,
                                        alpha, &evidence->confidence);
   return select(inertia, reseeded, unknown);
 }
 
 // Returns 1 for samples that are added to the far, or only, layer, else 0.
-static inline float8 far_samples(const LayeredPixels* pixels) {
-  return select((float8)(1.0f), (float8)(0.0f), pixels->is_split & ~(pixels->depth < pixels->between));
+static inline LaneFloat far_samples(const LayeredPixels* pixels) {
+  return select((LaneFloat)(1.0f), (LaneFloat)(0.0f), pixels->is_split & mask_not(pixels->depth < pixels->between));
 }
 
 // Gives the confidences of pixels of two layers a minus sign.
-static inline void mark_split(EightTexels* texels, int8 is_split) {
-  const int8 signs = is_split & INT_MIN;
-  texels->left.s37bf = as_float4(as_int4(texels->left.s37bf) | signs.lo);
-  texels->right.s37bf = as_float4(as_int4(texels->right.s37bf) | signs.hi);
+static inline LaneTexels mark_split(LaneTexels texels, LaneMask is_split) {
+  const LaneInt bits = as_lane_int(last_channels(texels));
+  return with_last(texels, as_lane_float(select(bits, bits | INT_MIN, is_split)));
 }
 
 // ---- Near layers.
@@ -232,37 +226,31 @@ static inline void mark_split(EightTexels* texels, int8 is_split) {
 // Returns them in this frame's light, with their confidence limited. The tile's own rejection tells of the far layer
 // alone; `cut`: how far the whole picture is another one.
 static inline KnownLayers known_near(const LayeredPixels* pixels, const FetchedLayers* fetched, RowLight light,
-                                       float cut) {
+                                     float cut) {
   KnownLayers near = fetched->known;
-  const float8 between = between_texels(fetched->from.fraction_x, fetched->from.fraction_y);
-  const float8 most = most_confidence(min(pixels->open_trust, 1.0f - cut));
+  const LaneFloat between = between_texels(fetched->from.fraction_x, fetched->from.fraction_y);
+  const LaneFloat most = most_confidence(min(pixels->open_trust, 1.0f - cut));
   near.confidence = min(after_resampling(near.confidence, between), min(most, RESAMPLED_CONFIDENCE_MAX));
-  const float8 coverage = confidences(near.texels);
-  near.texels = relight(near.texels, light);
-  near.texels.left.s37bf = coverage.lo;
-  near.texels.right.s37bf = coverage.hi;
+  const LaneFloat coverage = confidences(near.texels);
+  near.texels = with_last(relight(near.texels, light), coverage);
   return near;
 }
 
 // Turns samples into what the near layers have of them. Returns their weights: 0 of those that are invalid or of no
 // depth.
-static inline float8 near_samples(EightTexels* samples, float8 depth, float8 between) {
-  const int8 is_near = depth > between, is_far = depth < between;
-  const float8 none = (float8)(0.0f), one = (float8)(1.0f);
-  float8 weight = select(none, one, is_near | is_far);
-  if (may_be_bright(*samples)) weigh_by_luma(samples, &weight, 8);
-  const int8 counts = is_far & (weight > none);
+static inline LaneFloat near_samples(LaneTexels* samples, LaneFloat depth, LaneFloat between) {
+  const LaneMask is_near = depth > between, is_far = depth < between;
+  const LaneFloat none = (LaneFloat)(0.0f), one = (LaneFloat)(1.0f);
+  LaneFloat weight = select(none, one, is_near | is_far);
+  if (may_be_bright(*samples)) weigh_by_luma(samples, &weight, kLanes);
+  const LaneMask counts = is_far & (weight > none);
   weight = select(weight, one, counts);  // what is not there is not bright
 #if ALPHA
-  const float8 coverage = select(none, confidences(*samples), is_near);
+  const LaneFloat coverage = select(none, confidences(*samples), is_near);
 #else
-  const float8 coverage = select(none, one, is_near);
+  const LaneFloat coverage = select(none, one, is_near);
 #endif
-  const float8 taken = select(none, one, is_near);
-  samples->left *= to_four_texels(taken.lo);
-  samples->right *= to_four_texels(taken.hi);
-  samples->left.s37bf = coverage.lo;
-  samples->right.s37bf = coverage.hi;
+  *samples = with_last(times(*samples, select(none, one, is_near)), coverage);
   return weight;
 }
 
@@ -271,30 +259,28 @@ static inline KnownLayers update_near(KnownLayers near, const LayeredPixels* pix
                                       DEPTH_TEXELS depth, TexelLayout layout, const TemporalParams* params,
                                       const NearestSamples* nearest) {
   const SourceFrame frame = params->frame0;
-  float8 inertia = (float8)(0.0f);
-  const int8 unknown = pixels->is_split & (near.confidence < CONFIDENCE_MIN);
+  LaneFloat inertia = (LaneFloat)(0.0f);
+  const LaneMask unknown = pixels->is_split & (near.confidence < CONFIDENCE_MIN);
   if (any_lane(unknown))
     inertia = reseed_layer(kNearLayer, unknown, pixels, colour, depth, layout, &frame, nearest, &near.texels,
                            &near.alpha, &near.confidence);
 
-  EightTexels samples = load_samples(colour, frame.colour, nearest->x, nearest->y);
-  const float8 own = (float8)(load_depth4(depth, layout, nearest->x.lo, nearest->y),
-                              load_depth4(depth, layout, nearest->x.hi, nearest->y));
+  LaneTexels samples = load_samples(colour, frame.colour, nearest->x, nearest->y);
+  const LaneFloat own = load_depth_lanes(depth, layout, nearest->x, nearest->y);
   const float reach = max(NEAR_REACH * max(params->spacing_x, params->spacing_y), WIDE_REACH);
-  const float8 weight =
-      near_samples(&samples, own, pixels->between) * distance_weights(params, nearest, (float8)(reach));
-  const float8 part = sample_parts(near.confidence, inertia, weight);
-  near.texels.left += (samples.left - near.texels.left) * to_four_texels(part.lo);
-  near.texels.right += (samples.right - near.texels.right) * to_four_texels(part.hi);
+  const LaneFloat weight =
+      near_samples(&samples, own, pixels->between) * distance_weights(params, nearest, (LaneFloat)(reach));
+  const LaneFloat part = sample_parts(near.confidence, inertia, weight);
+  near.texels = move_to(near.texels, samples, part);
   near.confidence = min(near.confidence + weight, RESAMPLED_CONFIDENCE_MAX);
   return near;
 }
 
 // Stores those of `lanes`.
-static inline void store_near(STORED_HISTORY updated, int index, EightTexels texels, int8 lanes) {
+static inline void store_near(STORED_HISTORY updated, int index, LaneTexels texels, LaneMask lanes) {
   for (int i = 0; i < kLanes; ++i) {
     const float4 texel = first_texel(texels);
-    if (lanes.s0 != 0) store_history(updated, index + i, texel);
+    if (FIRST_LANE(lanes)) store_history(updated, index + i, texel);
     texels = push_texel(texels, texel);
     lanes = NEXT_LANES(lanes);
   }

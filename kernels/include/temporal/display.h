@@ -28,19 +28,18 @@ static inline Display display_of(float phase_x, float phase_y) {
   display.has_phase = phase_x != 0.0f || phase_y != 0.0f;
   display.step_x = 1 + (phase_x > 0.0f);
   display.step_y = 1 + (phase_y > 0.0f);
-  const Cubic x = cubic_weights((float8)((float)(display.step_x - 1) - phase_x), DISPLAY_SHARPNESS);
-  const Cubic y = cubic_weights((float8)((float)(display.step_y - 1) - phase_y), DISPLAY_SHARPNESS);
-  display.wx = (float4)(x.w0.s0, x.w1.s0, x.w2.s0, x.w3.s0);
-  display.wy = (float4)(y.w0.s0, y.w1.s0, y.w2.s0, y.w3.s0);
+  display.wx = first_weights(cubic_weights((LaneFloat)((float)(display.step_x - 1) - phase_x), DISPLAY_SHARPNESS));
+  display.wy = first_weights(cubic_weights((LaneFloat)((float)(display.step_y - 1) - phase_y), DISPLAY_SHARPNESS));
   return display;
 }
 
+#if LANES == 8
 // ---- The cubic at places that lie alike among their texels, eight of a row, row after row: each row of texels is
 // filtered along itself once, and then counts for the four rows of places that need it.
 
 // The cubic along a row of texels at eight places, and the range of the middle two texels of each.
 typedef struct FilteredRow {
-  EightTexels sum, least, most;
+  LaneTexels sum, least, most;
 } FilteredRow;
 
 static inline float16 blend_four(float16 at0, float16 at1, float16 at2, float16 at3, float4 x) {
@@ -50,7 +49,7 @@ static inline float16 blend_four(float16 at0, float16 at1, float16 at2, float16 
 // The texels from `index` on are the first of each place's four. All twelve are inside.
 static inline FilteredRow filter_row(HistoryLayer layer, int index, float4 x) {
   const TwelveTexels row = load_history12(layer, index);
-  const EightTexels at1 = next_texels(row), at2 = second_texels(row), at3 = third_texels(row);
+  const LaneTexels at1 = next_texels(row), at2 = second_texels(row), at3 = third_texels(row);
   const FilteredRow filtered = {
       {blend_four(row.first, at1.left, at2.left, at3.left, x),
        blend_four(row.second, at1.right, at2.right, at3.right, x)},
@@ -94,17 +93,18 @@ static inline float16 blend_held(float16 row0, float16 row1, float16 row2, float
 }
 
 // The cubic, held in the range of the middle four texels of each place.
-static inline EightTexels blend_filtered(const FilteredRows* rows, float4 y) {
+static inline LaneTexels blend_filtered(const FilteredRows* rows, float4 y) {
   const FilteredRow *r0 = &rows->row0, *r1 = &rows->row1, *r2 = &rows->row2, *r3 = &rows->row3;
-  const EightTexels blended = {blend_held(r0->sum.left, r1->sum.left, r2->sum.left, r3->sum.left,
+  const LaneTexels blended = {blend_held(r0->sum.left, r1->sum.left, r2->sum.left, r3->sum.left,
                                           min(r1->least.left, r2->least.left), max(r1->most.left, r2->most.left), y),
                                blend_held(r0->sum.right, r1->sum.right, r2->sum.right, r3->sum.right,
                                           min(r1->least.right, r2->least.right),
                                           max(r1->most.right, r2->most.right), y)};
   return blended;
 }
+#endif
 
-// ---- Smoothing of pixels of little confidence, eight of a row at a time. +.1 dB (docs/lab/temporal.md).
+// ---- Smoothing of pixels of little confidence. +.1 dB (docs/lab/temporal.md).
 
 // The sign of a confidence tells whether a texel has one layer or two. Where both kinds meet, one may hold a blade and
 // the other the sky behind it: they are not mixed.
@@ -114,8 +114,8 @@ static inline bool is_other_kind(float confidence, float own) {
 
 // The sums of each pixel's eight neighbours, anywhere, clamped to the edge; in place of those of the other kind it is
 // itself counted. The slow path.
-static inline EightTexels gather_around(HistoryLayer layer, int x, int y) {
-  EightTexels around = no_texels();
+static inline LaneTexels gather_around(HistoryLayer layer, int x, int y) {
+  LaneTexels around = no_texels();
   for (int i = 0; i < kLanes; ++i) {
     const float4 own = load_history(layer, y * layer.width + min(x + i, layer.width - 1));
     float4 sum = (float4)(0.0f);
@@ -130,27 +130,28 @@ static inline EightTexels gather_around(HistoryLayer layer, int x, int y) {
   return around;
 }
 
+#if LANES == 8
 // Four texels, each replaced by the pixel's own where it is of the other kind.
 static inline float16 of_own_kind(float16 texels, float16 own) {
   const int16 signs = (as_int16(texels) ^ as_int16(own)).s33337777bbbbffff;
   return select(texels, own, signs);
 }
 
-static inline EightTexels add_own_kind(EightTexels sum, EightTexels texels, EightTexels own) {
-  const EightTexels more = {sum.left + of_own_kind(texels.left, own.left),
+static inline LaneTexels add_own_kind(LaneTexels sum, LaneTexels texels, LaneTexels own) {
+  const LaneTexels more = {sum.left + of_own_kind(texels.left, own.left),
                             sum.right + of_own_kind(texels.right, own.right)};
   return more;
 }
 
-static inline EightTexels first_texels(TwelveTexels row) {
-  const EightTexels first = {row.first, row.second};
+static inline LaneTexels first_texels(TwelveTexels row) {
+  const LaneTexels first = {row.first, row.second};
   return first;
 }
 
 // The sums of the neighbours of the middle eight of three rows of ten texels.
-static inline EightTexels sum_around(TwelveTexels above, TwelveTexels same, TwelveTexels below) {
-  const EightTexels own = next_texels(same);
-  EightTexels sum = {(float16)(0.0f), (float16)(0.0f)};
+static inline LaneTexels sum_around(TwelveTexels above, TwelveTexels same, TwelveTexels below) {
+  const LaneTexels own = next_texels(same);
+  LaneTexels sum = no_texels();
   sum = add_own_kind(sum, first_texels(above), own);
   sum = add_own_kind(sum, next_texels(above), own);
   sum = add_own_kind(sum, second_texels(above), own);
@@ -170,7 +171,7 @@ static inline int4 common_signs_of(TwelveTexels row) {
 }
 
 // The same where all of them are inside.
-static inline EightTexels load_around(HistoryLayer layer, int x, int y) {
+static inline LaneTexels load_around(HistoryLayer layer, int x, int y) {
   const int index = y * layer.width + x - 1;
   const TwelveTexels above = load_history12(layer, index - layer.width), same = load_history12(layer, index);
   const TwelveTexels below = load_history12(layer, index + layer.width);
@@ -178,31 +179,29 @@ static inline EightTexels load_around(HistoryLayer layer, int x, int y) {
                           !all(common_signs_of(above) & common_signs_of(same) & common_signs_of(below));
   if (kinds_meet) return sum_around(above, same, below);
   const TwelveTexels both = {above.first + below.first, above.second + below.second, above.third + below.third};
-  const EightTexels middle = next_texels(both), right = second_texels(both), beside = second_texels(same);
-  const EightTexels around = {both.first + right.left + middle.left + (same.first + beside.left),
+  const LaneTexels middle = next_texels(both), right = second_texels(both), beside = second_texels(same);
+  const LaneTexels around = {both.first + right.left + middle.left + (same.first + beside.left),
                               both.second + right.right + middle.right + (same.second + beside.right)};
   return around;
 }
+#endif
 
 // The parts of each pixel itself and of each of its neighbours in what is shown.
 typedef struct SmoothParts {
-  float8 own, other;
+  LaneFloat own, other;
 } SmoothParts;
 
-static inline SmoothParts smooth_parts(float8 confidence) {
-  const int8 is_little = confidence < SMOOTHED_CONFIDENCE_MAX;
-  const float8 little = select((float8)(0.0f), (float8)(SMOOTHING_NEIGHBOUR_WEIGHT), is_little);
-  const float8 other = little * bell(SMOOTHING_FALLOFF * confidence);
-  const float8 own = confidence + SMOOTHING_OWN_WEIGHT;
-  const float8 scale = 1.0f / (own + 8.0f * other);
-  const SmoothParts parts = {select((float8)(1.0f), own * scale, other > 0.0f), other * scale};
+static inline SmoothParts smooth_parts(LaneFloat confidence) {
+  const LaneMask is_little = confidence < SMOOTHED_CONFIDENCE_MAX;
+  const LaneFloat little = select((LaneFloat)(0.0f), (LaneFloat)(SMOOTHING_NEIGHBOUR_WEIGHT), is_little);
+  const LaneFloat other = little * bell(SMOOTHING_FALLOFF * confidence);
+  const LaneFloat own = confidence + SMOOTHING_OWN_WEIGHT;
+  const LaneFloat scale = 1.0f / (own + 8.0f * other);
+  const SmoothParts parts = {select((LaneFloat)(1.0f), own * scale, other > 0.0f), other * scale};
   return parts;
 }
 
 // Pixels mixed with their neighbours, whose sums are `around`.
-static inline EightTexels smooth_little_known(EightTexels pixels, EightTexels around, SmoothParts parts) {
-  const EightTexels smooth = {
-      pixels.left * to_four_texels(parts.own.lo) + around.left * to_four_texels(parts.other.lo),
-      pixels.right * to_four_texels(parts.own.hi) + around.right * to_four_texels(parts.other.hi)};
-  return smooth;
+static inline LaneTexels smooth_little_known(LaneTexels pixels, LaneTexels around, SmoothParts parts) {
+  return add_times(times(around, parts.other), pixels, parts.own);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Fetching history: a layer of the previous frame, and its alpha, at eight output pixels of a row, in one tile.
+// Fetching history: a layer of the previous frame, and its alpha, at output pixels of a row, in one tile.
 #pragma once
 
 #include "arithmetic.h"
@@ -14,16 +14,16 @@
 // The cubic is Hermite's, whose slope at each texel comes from two texels on each side. It keeps more of what is
 // resampled in each frame than the cubic of 4x4 texels does.
 //
-// The weights of eight places on one axis, `fraction` of the way from the third texel to the fourth. The slope at
+// The weights of places on one axis, `fraction` of the way from the third texel to the fourth. The slope at
 // texel 0 is LONG_CUBIC_NEAR_SLOPE (t[1] - t[-1]) - LONG_CUBIC_FAR_SLOPE (t[2] - t[-2]).
 typedef struct SixWeights {
-  float8 w0, w1, w2, w3, w4, w5;
+  LaneFloat w0, w1, w2, w3, w4, w5;
 } SixWeights;
 
-static inline SixWeights six_weights(float8 f) {
-  const float8 rest = 1.0f - f;
-  const float8 before = f * rest * rest, after = -f * f * rest;  // what the slopes at the two texels count
-  const float8 next = f * f * (3.0f - 2.0f * f);
+static inline SixWeights six_weights(LaneFloat f) {
+  const LaneFloat rest = 1.0f - f;
+  const LaneFloat before = f * rest * rest, after = -f * f * rest;  // what the slopes at the two texels count
+  const LaneFloat next = f * f * (3.0f - 2.0f * f);
   SixWeights w;
   w.w0 = LONG_CUBIC_FAR_SLOPE * before;
   w.w1 = LONG_CUBIC_FAR_SLOPE * after - LONG_CUBIC_NEAR_SLOPE * before;
@@ -36,7 +36,8 @@ static inline SixWeights six_weights(float8 f) {
 
 // Returns the six weights of the first place, and two that do not count.
 static inline float8 first_six(SixWeights w) {
-  return (float8)(w.w0.s0, w.w1.s0, w.w2.s0, w.w3.s0, w.w4.s0, w.w5.s0, 0.0f, 0.0f);
+  return (float8)(FIRST_LANE(w.w0), FIRST_LANE(w.w1), FIRST_LANE(w.w2), FIRST_LANE(w.w3), FIRST_LANE(w.w4),
+                  FIRST_LANE(w.w5), 0.0f, 0.0f);
 }
 
 // Returns the weights with the second place as the first, and the first as the last.
@@ -54,7 +55,7 @@ typedef struct SixTexels {
 
 // Loads those from (x, y) on; `inside`: they are there, else they are clamped to the edge.
 static inline SixTexels load_six(HistoryLayer layer, int x, int y, bool inside) {
-  if (ON_CPU && inside) {
+  if (LANES == 8 && inside) {
     const int index = y * layer.width + x;
     const SixTexels row = {load_history4(layer, index), load_history2(layer, index + 4)};
     return row;
@@ -118,78 +119,74 @@ static inline float sample_alpha_six(AlphaPlane plane, int x, int y, float8 wx, 
 
 enum { kResampledAhead = 3 * kTemporalTile };  // texels to prefetch: three blocks further along the row
 
-// History at eight pixels.
+// History at pixels.
 typedef struct FetchedHistory {
-  EightTexels texels;
-  float8 confidence;              // within [0, CONFIDENCE_MAX]; 0 from beyond the previous picture's edges
-  float8 fraction_x, fraction_y;  // where between texels it was read; 0 where it was copied
+  LaneTexels texels;
+  LaneFloat confidence;              // within [0, CONFIDENCE_MAX]; 0 from beyond the previous picture's edges
+  LaneFloat fraction_x, fraction_y;  // where between texels it was read; 0 where it was copied
 } FetchedHistory;
 
-// The phases of the previous texels around eight texels, clamped to the edge.
+// The phases of the previous texels around texels, clamped to the edge.
 typedef struct SourcePhases {
-  float8 x, y;
+  LaneFloat x, y;
 } SourcePhases;
 
-static inline SourcePhases phases_at(__global const TileReprojection* tiles, const TemporalParams* params, int8 x,
-                                     int8 y) {
-  const int8 last_x = (int8)(params->output_width - 1), last_y = (int8)(params->output_height - 1);
-  const uint8 tile_x = as_uint8(clamp(x, (int8)(0), last_x)) / (uint)kTemporalTile;
-  const uint8 tile_y = as_uint8(clamp(y, (int8)(0), last_y)) / (uint)kTemporalTile;
-  const int8 at = as_int8(tile_y) * params->tiles_x + as_int8(tile_x);
-  if (!any_lane(at ^ at.s0)) {  // most often it is one tile
-    const SourcePhases one = {(float8)(tiles[at.s0].phase_x), (float8)(tiles[at.s0].phase_y)};
+static inline SourcePhases phases_at(__global const TileReprojection* tiles, const TemporalParams* params, LaneInt x,
+                                     LaneInt y) {
+  const LaneInt last_x = (LaneInt)(params->output_width - 1), last_y = (LaneInt)(params->output_height - 1);
+  const LaneUint tile_x = as_lane_uint(clamp(x, (LaneInt)(0), last_x)) / (uint)kTemporalTile;
+  const LaneUint tile_y = as_lane_uint(clamp(y, (LaneInt)(0), last_y)) / (uint)kTemporalTile;
+  const LaneInt at = as_lane_int(tile_y) * params->tiles_x + as_lane_int(tile_x);
+  __global const TileReprojection* first = tiles + FIRST_LANE(at);
+  if (!any_lane(at != FIRST_LANE(at))) {  // most often it is one tile
+    const SourcePhases one = {(LaneFloat)(first->phase_x), (LaneFloat)(first->phase_y)};
     return one;
   }
-  const SourcePhases phases = {
-      (float8)(tiles[at.s0].phase_x, tiles[at.s1].phase_x, tiles[at.s2].phase_x, tiles[at.s3].phase_x,
-               tiles[at.s4].phase_x, tiles[at.s5].phase_x, tiles[at.s6].phase_x, tiles[at.s7].phase_x),
-      (float8)(tiles[at.s0].phase_y, tiles[at.s1].phase_y, tiles[at.s2].phase_y, tiles[at.s3].phase_y,
-               tiles[at.s4].phase_y, tiles[at.s5].phase_y, tiles[at.s6].phase_y, tiles[at.s7].phase_y)};
+  const LaneInt place = (int)(sizeof(TileReprojection) / sizeof(float)) * at;
+  const SourcePhases phases = {gather(&tiles->phase_x, place), gather(&tiles->phase_y, place)};
   return phases;
 }
 
-// The places of the pictures of eight pixels in the previous history: on each axis the first of the four texels around
+// The places of the pictures of pixels in the previous history: on each axis the first of the four texels around
 // each place, and the fraction of the way between the middle two.
 typedef struct SourcePlaces {
   Positions x, y;
 } SourcePlaces;
 
 static inline SourcePlaces source_places(__global const TileReprojection* previous, const TemporalParams* params,
-                                         TileReprojection tile, const EightReprojections* motion, int x, int y) {
-  const int8 columns = x + LANE_NUMBERS;
-  float8 at_x = clamp(motion->x, -SOURCE_DISTANCE_MAX, SOURCE_DISTANCE_MAX) + tile.phase_x;
-  float8 at_y = clamp(motion->y, -SOURCE_DISTANCE_MAX, SOURCE_DISTANCE_MAX) + tile.phase_y;
+                                         TileReprojection tile, const Reprojections* motion, int x, int y) {
+  const LaneInt columns = x + LANE_NUMBERS;
+  LaneFloat at_x = clamp(motion->x, -SOURCE_DISTANCE_MAX, SOURCE_DISTANCE_MAX) + tile.phase_x;
+  LaneFloat at_y = clamp(motion->y, -SOURCE_DISTANCE_MAX, SOURCE_DISTANCE_MAX) + tile.phase_y;
   // Less the phase of the texels there.
-  const int8 i = columns + convert_int8(at_x + 0.5f), j = y + convert_int8(at_y + 0.5f);
+  const LaneInt i = columns + to_lane_int(at_x + 0.5f), j = y + to_lane_int(at_y + 0.5f);
   const SourcePhases phase = phases_at(previous, params, i, j);
   at_x -= phase.x;
   at_y -= phase.y;
-  int8 whole_x = convert_int8(at_x), whole_y = convert_int8(at_y);
-  whole_x += convert_float8(whole_x) > at_x;  // towards minus infinity
-  whole_y += convert_float8(whole_y) > at_y;
-  const SourcePlaces places = {{columns + whole_x - 1, at_x - convert_float8(whole_x)},
-                               {y + whole_y - 1, at_y - convert_float8(whole_y)}};
+  const LaneInt whole_x = floor_lanes(at_x), whole_y = floor_lanes(at_y);
+  const SourcePlaces places = {{columns + whole_x - 1, at_x - to_lane_float(whole_x)},
+                               {y + whole_y - 1, at_y - to_lane_float(whole_y)}};
   return places;
 }
 
-// Returns whether the 4x4 texels from (x, y) on lie inside, for all eight pixels.
-static inline bool lie_inside(int8 x, int8 y, int width, int height) {
-  return !any_lane((x | y | (width - 4 - x) | (height - 4 - y)) >> 31);
+// Returns whether the 4x4 texels from (x, y) on lie inside, for all pixels.
+static inline bool lie_inside(LaneInt x, LaneInt y, int width, int height) {
+  return !any_lane((x | y | (width - 4 - x) | (height - 4 - y)) < 0);
 }
 
 // Returns whether pictures were beyond the edges of one axis.
-static inline int8 lie_outside(Positions from, int size) {
-  const float8 at = convert_float8(from.texel + 1) + from.fraction;
+static inline LaneMask lie_outside(Positions from, int size) {
+  const LaneFloat at = to_lane_float(from.texel + 1) + from.fraction;
   return (at < -0.5f) | (at > (float)size - 0.5f);
 }
 
-static inline float8 held_confidence(EightTexels texels) {
+static inline LaneFloat held_confidence(LaneTexels texels) {
   return clamp(confidences(texels), 0.0f, CONFIDENCE_MAX);
 }
 
-// A walk over eight places, whose first is the next.
+// A walk over the lanes' places, whose first is the next.
 typedef struct CubicWalk {
-  int8 column, row;
+  LaneInt column, row;
   Cubic x, y;
 } CubicWalk;
 
@@ -200,25 +197,25 @@ static inline void walk_on(CubicWalk* at) {
   at->y = next_weights(at->y);
 }
 
-static inline void sample_next(HistoryLayer layer, bool inside, CubicWalk* at, EightTexels* sampled) {
-  const float4 texel =
-      sample_history(layer, at->column.s0, at->row.s0, inside, first_weights(at->x), first_weights(at->y));
+static inline void sample_next(HistoryLayer layer, bool inside, CubicWalk* at, LaneTexels* sampled) {
+  const float4 texel = sample_history(layer, FIRST_LANE(at->column), FIRST_LANE(at->row), inside,
+                                      first_weights(at->x), first_weights(at->y));
   *sampled = push_texel(*sampled, texel);
   walk_on(at);
 }
 
-// Returns a layer at eight places with weights x and y, held in the range of the middle four texels. `inside`: all
+// Returns a layer at places with weights x and y, held in the range of the middle four texels. `inside`: all
 // texels are.
-static inline EightTexels sample_places(HistoryLayer layer, SourcePlaces from, bool inside, Cubic x, Cubic y) {
+static inline LaneTexels sample_places(HistoryLayer layer, SourcePlaces from, bool inside, Cubic x, Cubic y) {
   CubicWalk at = {from.x.texel, from.y.texel, x, y};
-  EightTexels sampled = no_texels();
+  LaneTexels sampled = no_texels();
   EACH_LANE(sample_next(layer, inside, &at, &sampled));
   return sampled;
 }
 
 #if TAPS == 36
 typedef struct SixWalk {
-  int8 column, row;
+  LaneInt column, row;
   SixWeights x, y;
 } SixWalk;
 
@@ -235,52 +232,53 @@ static inline void walk_on_six(SixWalk* at) {
   at->y = next_six(at->y);
 }
 
-static inline void sample_next_six(HistoryLayer layer, bool inside, SixWalk* at, EightTexels* sampled) {
-  const float4 texel = sample_six(layer, at->column.s0, at->row.s0, inside, first_six(at->x), first_six(at->y));
+static inline void sample_next_six(HistoryLayer layer, bool inside, SixWalk* at, LaneTexels* sampled) {
+  const float4 texel =
+      sample_six(layer, FIRST_LANE(at->column), FIRST_LANE(at->row), inside, first_six(at->x), first_six(at->y));
   *sampled = push_texel(*sampled, texel);
   walk_on_six(at);
 }
 
-// Returns a layer at eight places between 6x6 texels.
-static inline EightTexels resample_texels(HistoryLayer layer, SourcePlaces from) {
+// Returns a layer at places between 6x6 texels.
+static inline LaneTexels resample_texels(HistoryLayer layer, SourcePlaces from) {
   SixWalk at = walk_between_six(from);
   const bool inside = lie_inside(at.column, at.row, layer.width - 2, layer.height - 2);
-  EightTexels sampled = no_texels();
+  LaneTexels sampled = no_texels();
   EACH_LANE(sample_next_six(layer, inside, &at, &sampled));
   return sampled;
 }
 #else
-// Returns a layer at eight places between 4x4 texels.
-static inline EightTexels resample_texels(HistoryLayer layer, SourcePlaces from) {
+// Returns a layer at places between 4x4 texels.
+static inline LaneTexels resample_texels(HistoryLayer layer, SourcePlaces from) {
   const bool inside = lie_inside(from.x.texel, from.y.texel, layer.width, layer.height);
   return sample_places(layer, from, inside, cubic_weights(from.x.fraction, HISTORY_SHARPNESS),
                        cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
 }
 #endif
 
-// Returns history at eight places, between texels.
+// Returns history at places, between texels.
 static inline FetchedHistory resample_history(HistoryLayer layer, SourcePlaces from) {
   const bool inside = lie_inside(from.x.texel, from.y.texel, layer.width, layer.height);
-  will_read_rows(layer, from.x.texel.s0 + kResampledAhead, from.y.texel.s0);
-  const EightTexels texels = resample_texels(layer, from);
-  int8 outside = (int8)(0);
+  will_read_rows(layer, FIRST_LANE(from.x.texel) + kResampledAhead, FIRST_LANE(from.y.texel));
+  const LaneTexels texels = resample_texels(layer, from);
+  LaneMask outside = mask_of(false);
   if (!inside) outside = lie_outside(from.x, layer.width) | lie_outside(from.y, layer.height);
-  const float8 confidence = select(held_confidence(texels), (float8)(0.0f), outside);
+  const LaneFloat confidence = select(held_confidence(texels), (LaneFloat)(0.0f), outside);
   const FetchedHistory fetched = {texels, confidence, from.x.fraction, from.y.fraction};
   return fetched;
 }
 
-// Returns the eight texels from (x, y) on as they are.
+// Returns the texels from (x, y) on as they are.
 static inline FetchedHistory copy_history(HistoryLayer layer, int x, int y) {
-  const EightTexels texels = load_history_lanes(layer, y * layer.width + x);
-  const FetchedHistory fetched = {texels, held_confidence(texels), (float8)(0.0f), (float8)(0.0f)};
+  const LaneTexels texels = load_history_lanes(layer, y * layer.width + x);
+  const FetchedHistory fetched = {texels, held_confidence(texels), (LaneFloat)(0.0f), (LaneFloat)(0.0f)};
   return fetched;
 }
 
 // Returns a layer at the tile's pixels from (x, y) on.
 static inline FetchedHistory fetch_history(HistoryLayer layer, __global const TileReprojection* previous,
                                            const TemporalParams* params, TileReprojection tile, TilePath path,
-                                           const EightReprojections* motion, int x, int y) {
+                                           const Reprojections* motion, int x, int y) {
   if (path != kResampled) return copy_history(layer, x - tile.step_x, y - tile.step_y);
   return resample_history(layer, source_places(previous, params, tile, motion, x, y));
 }
@@ -288,18 +286,20 @@ static inline FetchedHistory fetch_history(HistoryLayer layer, __global const Ti
 // ---- Alpha.
 
 // Returns alpha as resample_history() returns colour.
-static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
-  float8 sampled = (float8)(0.0f);
+static inline LaneFloat resample_alpha(AlphaPlane plane, SourcePlaces from) {
+  LaneFloat sampled = (LaneFloat)(0.0f);
 #if TAPS == 36
   SixWalk at = walk_between_six(from);
   for (int i = 0; i < kLanes; ++i) {
-    sampled.s0 = sample_alpha_six(plane, at.column.s0, at.row.s0, first_six(at.x), first_six(at.y));
+    FIRST_LANE(sampled) =
+        sample_alpha_six(plane, FIRST_LANE(at.column), FIRST_LANE(at.row), first_six(at.x), first_six(at.y));
     walk_on_six(&at);
 #else
   CubicWalk at = {from.x.texel, from.y.texel, cubic_weights(from.x.fraction, HISTORY_SHARPNESS),
                   cubic_weights(from.y.fraction, HISTORY_SHARPNESS)};
   for (int i = 0; i < kLanes; ++i) {
-    sampled.s0 = sample_alpha(plane, at.column.s0, at.row.s0, first_weights(at.x), first_weights(at.y));
+    FIRST_LANE(sampled) =
+        sample_alpha(plane, FIRST_LANE(at.column), FIRST_LANE(at.row), first_weights(at.x), first_weights(at.y));
     walk_on(&at);
 #endif
     sampled = NEXT_LANES(sampled);
@@ -308,9 +308,9 @@ static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
 }
 
 // Returns alpha as fetch_history() returns colour.
-static inline float8 fetch_alpha(AlphaPlane plane, __global const TileReprojection* previous,
-                                 const TemporalParams* params, TileReprojection tile, TilePath path,
-                                 const EightReprojections* motion, int x, int y) {
+static inline LaneFloat fetch_alpha(AlphaPlane plane, __global const TileReprojection* previous,
+                                    const TemporalParams* params, TileReprojection tile, TilePath path,
+                                    const Reprojections* motion, int x, int y) {
   if (path != kResampled) return load_alpha_lanes(plane, (y - tile.step_y) * plane.width + x - tile.step_x);
   return resample_alpha(plane, source_places(previous, params, tile, motion, x, y));
 }

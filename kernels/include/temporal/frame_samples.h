@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The samples of this frame, one at a time or one for each of eight pixels. A sample that is not finite, or as large as
+// The samples of this frame, one at a time or one for each lane. A sample that is not finite, or as large as
 // a half can be, is invalid and takes no part.
 #pragma once
 
@@ -16,13 +16,6 @@ static inline bool is_valid(float4 sample) {
   return (hits.x | hits.y) == 0;
 }
 
-// Returns in each channel of four samples whether that sample is valid.
-static inline int16 are_valid(float16 samples) {
-  const int16 magnitude = as_int16(samples) & 0x7fffffff;
-  const int16 pairs = max(magnitude, magnitude.s1032547698badcfe);
-  return max(pairs, pairs.s23016745ab89efcd) < INVALID_BITS;
-}
-
 static inline float largest_colour(float4 colour) {
   return max(max(colour.x, colour.y), max(colour.z, 0.0f));
 }
@@ -32,17 +25,17 @@ static inline float4 sample_at(COLOUR_TEXELS texels, const SourceFrame* frame, i
   return load_colour(texels, frame->colour, clamp(x, 0, frame->width - 1), clamp(y, 0, frame->height - 1));
 }
 
-static inline void load_next_sample(COLOUR_TEXELS texels, TexelLayout layout, int8* x, int y, EightTexels* samples) {
-  *samples = push_texel(*samples, load_colour(texels, layout, x->s0, y));
+static inline void load_next_sample(COLOUR_TEXELS texels, TexelLayout layout, LaneInt* x, int y, LaneTexels* samples) {
+  *samples = push_texel(*samples, load_colour(texels, layout, FIRST_LANE(*x), y));
   *x = NEXT_LANES(*x);
 }
 
-// Loads the samples of a row nearest to eight pixels.
-static inline EightTexels load_samples(COLOUR_TEXELS texels, TexelLayout layout, int8 x, int y) {
-#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF && ON_CPU
+// Loads the samples of a row nearest to the pixels.
+static inline LaneTexels load_samples(COLOUR_TEXELS texels, TexelLayout layout, LaneInt x, int y) {
+#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF && LANES == 8
   return gather_half_texels((__global const ulong*)texels + row_index(layout, y), x);
 #else
-  EightTexels samples = no_texels();
+  LaneTexels samples = no_texels();
   EACH_LANE(load_next_sample(texels, layout, &x, y, &samples));
   return samples;
 #endif
@@ -59,54 +52,58 @@ static inline float luma_weight(float4 sample) {
 // Several side by side are held back for a frame: a fault of one frame then never reaches history, and what stays, or
 // comes back soon, is late by one frame.
 
-// What is compared of eight samples.
+// What is compared of samples.
 typedef struct SampleLanes {
-  float8 luma;                // negative channels included
-  float8 brightest, darkest;  // channels of colour
-  int8 valid;
+  LaneFloat luma;                // negative channels included
+  LaneFloat brightest, darkest;  // channels of colour
+  LaneMask valid;
 } SampleLanes;
 
-static inline float8 luma_of(EightTexels texels) {
+static inline LaneFloat luma_of(LaneTexels texels) {
   return 0.25f * (reds(texels) + blues(texels)) + 0.5f * greens(texels);
 }
 
-static inline int8 magnitude_bits(float8 value) {
-  return as_int8(value) & 0x7fffffff;
+static inline LaneInt magnitude_bits(LaneFloat value) {
+  return as_lane_int(value) & 0x7fffffff;
 }
 
-static inline SampleLanes compare_lanes(EightTexels samples) {
-  const float8 red = reds(samples), green = greens(samples), blue = blues(samples);
-  const int8 largest = max(max(magnitude_bits(red), magnitude_bits(green)),
-                           max(magnitude_bits(blue), magnitude_bits(last_channels(samples))));
+// Returns which samples are valid.
+static inline LaneMask are_valid(LaneTexels samples) {
+  return max(max(magnitude_bits(reds(samples)), magnitude_bits(greens(samples))),
+             max(magnitude_bits(blues(samples)), magnitude_bits(last_channels(samples)))) < INVALID_BITS;
+}
+
+static inline SampleLanes compare_lanes(LaneTexels samples) {
+  const LaneFloat red = reds(samples), green = greens(samples), blue = blues(samples);
   const SampleLanes lanes = {luma_of(samples), max(max(red, green), blue), min(min(red, green), blue),
-                             largest < INVALID_BITS};
+                             are_valid(samples)};
   return lanes;
 }
 
 // Limits beyond which samples are outliers.
 typedef struct OutlierRange {
-  float8 most, least;
+  LaneFloat most, least;
 } OutlierRange;
 
-static inline OutlierRange outlier_range(EightTexels history) {
-  const float8 light = max(max(fabs(reds(history)), fabs(greens(history))), fabs(blues(history)));
+static inline OutlierRange outlier_range(LaneTexels history) {
+  const LaneFloat light = max(max(fabs(reds(history)), fabs(greens(history))), fabs(blues(history)));
   const OutlierRange range = {OUTLIER_RATIO_MIN * (light + OUTLIER_FLOOR), -(light + NEGATIVE_OUTLIER_FLOOR)};
   return range;
 }
 
 // Returns which samples are valid and outliers.
-static inline int8 are_outliers(const SampleLanes* samples, OutlierRange range) {
+static inline LaneMask are_outliers(const SampleLanes* samples, OutlierRange range) {
   return samples->valid & ((samples->brightest > range.most) | (samples->darkest < range.least));
 }
 
-// ---- The sample of this frame nearest to each of eight output pixels of a row, in one tile.
+// ---- The sample of this frame nearest to each of some output pixels of a row, in one tile.
 
-// Nearest samples. A pixel's picture lies at its centre + the tile's phase. All eight share their row, as y's lanes do.
+// Nearest samples. A pixel's picture lies at its centre + the tile's phase. All share their row, as y's lanes do.
 typedef struct NearestSamples {
-  int8 x;        // columns of the viewport
+  LaneInt x;        // columns of the viewport
   int y;         // row
   // From the sample to the pixel's picture, in samples; beyond the outermost samples more than half of one.
-  float8 from_x;
+  LaneFloat from_x;
   float from_y;
   Positions between_x, between_y;  // the same place, clamped to the viewport: between which samples it lies
 } NearestSamples;
@@ -115,7 +112,7 @@ typedef struct NearestSamples {
 static inline Positions row_position(const TemporalParams* params, __global const int* positions, int y) {
   const int texel = positions[2 * params->columns + y];
   const float fraction = as_float(positions[2 * params->columns + params->output_height + y]);
-  const Positions row = {(int8)(texel), (float8)(fraction)};
+  const Positions row = {(LaneInt)(texel), (LaneFloat)(fraction)};
   return row;
 }
 
@@ -123,13 +120,13 @@ static inline Positions row_position(const TemporalParams* params, __global cons
 // side where there is one.
 static inline void move_to_shaded(NearestSamples* nearest, const TemporalParams* params) {
   const int last = params->frame0.width - 1;
-  const int8 is_shaded = ((nearest->x + nearest->y) & 1) == params->parity;
-  int8 step = select((int8)(-1), (int8)(1), nearest->from_x > 0.0f);
-  step = select(step, (int8)(1), nearest->x == 0);
-  step = select(step, (int8)(-1), nearest->x == last);
-  step = select(step, (int8)(0), is_shaded | (int8)(last == 0 ? -1 : 0));
+  const LaneMask is_shaded = ((nearest->x + nearest->y) & 1) == params->parity;
+  LaneInt step = select((LaneInt)(-1), (LaneInt)(1), nearest->from_x > 0.0f);
+  step = select(step, (LaneInt)(1), nearest->x == 0);
+  step = select(step, (LaneInt)(-1), nearest->x == last);
+  step = select(step, (LaneInt)(0), is_shaded | mask_of(last == 0));
   nearest->x += step;
-  nearest->from_x -= convert_float8(step);
+  nearest->from_x -= to_lane_float(step);
 }
 
 // Finds the nearest samples of the pixels from column x on, in a row that is not known yet.
@@ -137,11 +134,11 @@ static inline NearestSamples find_nearest_columns(const TemporalParams* params, 
                                                   TileReprojection tile) {
   Positions place = load_positions(positions, params->columns, x);
   if (tile.phase_x != 0.0f || tile.phase_y != 0.0f)
-    place = shifted_positions(place, (float8)(tile.phase_x / params->spacing_x));
+    place = shifted_positions(place, (LaneFloat)(tile.phase_x / params->spacing_x));
   NearestSamples nearest;
   nearest.between_x = held_positions(place, params->frame0.width - 1);
   nearest.x = nearest_samples(nearest.between_x);
-  nearest.from_x = place.fraction + convert_float8(place.texel - nearest.x);
+  nearest.from_x = place.fraction + to_lane_float(place.texel - nearest.x);
   return nearest;
 }
 
@@ -150,10 +147,10 @@ static inline NearestSamples in_row(const TemporalParams* params, NearestSamples
                                     TileReprojection tile) {
   Positions place = row;
   if (tile.phase_x != 0.0f || tile.phase_y != 0.0f)
-    place = shifted_positions(row, (float8)(tile.phase_y / params->spacing_y));
+    place = shifted_positions(row, (LaneFloat)(tile.phase_y / params->spacing_y));
   nearest.between_y = held_positions(place, params->frame0.height - 1);
-  nearest.y = nearest_samples(nearest.between_y).s0;
-  nearest.from_y = place.fraction.s0 + (float)(place.texel.s0 - nearest.y);
+  nearest.y = FIRST_LANE(nearest_samples(nearest.between_y));
+  nearest.from_y = FIRST_LANE(place.fraction) + (float)(FIRST_LANE(place.texel) - nearest.y);
   if (params->parity >= 0) move_to_shaded(&nearest, params);
   return nearest;
 }

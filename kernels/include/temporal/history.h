@@ -55,31 +55,6 @@ static inline int confidence_sign(HistoryLayer layer, int index) {
 #endif
 }
 
-// Eight texels of a row, in fours. Not an array: PoCL keeps those in memory.
-typedef struct EightTexels {
-  float16 left, right;
-} EightTexels;
-
-static inline EightTexels no_texels(void) {
-  const EightTexels none = {(float16)(0.0f), (float16)(0.0f)};
-  return none;
-}
-
-static inline float4 first_texel(EightTexels texels) {
-  return texels.left.s0123;
-}
-
-// Returns the texels, of which kLanes count, without the first, and `texel` as the last.
-static inline EightTexels push_texel(EightTexels texels, float4 texel) {
-#if ON_CPU
-  const EightTexels pushed = {(float16)(texels.left.s456789ab, texels.left.scdef, texels.right.s0123),
-                              (float16)(texels.right.s456789ab, texels.right.scdef, texel)};
-#else
-  const EightTexels pushed = {(float16)(texel, texel, texel, texel), (float16)(texel, texel, texel, texel)};
-#endif
-  return pushed;
-}
-
 // The texels index and index + 1.
 static inline float8 load_history2(HistoryLayer layer, int index) {
 #if HISTORY_FORMAT == HALF
@@ -100,37 +75,37 @@ static inline float16 load_history4(HistoryLayer layer, int index) {
 #endif
 }
 
-static inline EightTexels load_history8(HistoryLayer layer, int index) {
-  const EightTexels row = {load_history4(layer, index), load_history4(layer, index + 4)};
+// The texels from `index` on, one a lane.
+static inline LaneTexels load_history_lanes(HistoryLayer layer, int index) {
+#if LANES == 8
+  const LaneTexels row = {load_history4(layer, index), load_history4(layer, index + 4)};
   return row;
+#else
+  return load_history(layer, index);
+#endif
 }
 
-// As many from `index` on as lanes count.
-static inline EightTexels load_history_lanes(HistoryLayer layer, int index) {
-  return ON_CPU ? load_history8(layer, index) : push_texel(no_texels(), load_history(layer, index));
-}
-
-#if ON_CPU
-// Four-channel halves at eight indices.
-static inline EightTexels gather_half_texels(__global const ulong* texels, int8 index) {
-  const EightTexels gathered = {
+#if LANES == 8
+// Four-channel halves at the lanes' indices.
+static inline LaneTexels gather_half_texels(__global const ulong* texels, LaneInt index) {
+  const LaneTexels gathered = {
       load_half_bits((ulong4)(texels[index.s0], texels[index.s1], texels[index.s2], texels[index.s3])),
       load_half_bits((ulong4)(texels[index.s4], texels[index.s5], texels[index.s6], texels[index.s7]))};
   return gathered;
 }
 #endif
 
-static inline void push_history(HistoryLayer layer, int8* index, EightTexels* texels) {
-  *texels = push_texel(*texels, load_history(layer, index->s0));
+static inline void push_history(HistoryLayer layer, LaneInt* index, LaneTexels* texels) {
+  *texels = push_texel(*texels, load_history(layer, FIRST_LANE(*index)));
   *index = NEXT_LANES(*index);
 }
 
-// The texels at eight indices.
-static inline EightTexels gather_history(HistoryLayer layer, int8 index) {
-#if HISTORY_FORMAT == HALF && ON_CPU
+// The texels at the lanes' indices.
+static inline LaneTexels gather_history(HistoryLayer layer, LaneInt index) {
+#if HISTORY_FORMAT == HALF && LANES == 8
   return gather_half_texels((__global const ulong*)layer.texels, index);
 #else
-  EightTexels texels = no_texels();
+  LaneTexels texels = no_texels();
   EACH_LANE(push_history(layer, &index, &texels));
   return texels;
 #endif
@@ -141,32 +116,10 @@ static inline void will_read_history(HistoryLayer layer, int index) {
   WILL_READ(layer.texels + 4 * index);
 }
 
-// Each value to the four channels of a texel.
-static inline float16 to_four_texels(float4 value) {
-  return value.s0000111122223333;
-}
-
-// The lanes of four texels that hold their last channel.
+// The channels of four texels that are their last ones.
 #define LAST_CHANNELS ((int16)(0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1))
 
-// The channels of eight texels.
-static inline float8 reds(EightTexels texels) {
-  return (float8)(texels.left.s048c, texels.right.s048c);
-}
-
-static inline float8 greens(EightTexels texels) {
-  return (float8)(texels.left.s159d, texels.right.s159d);
-}
-
-static inline float8 blues(EightTexels texels) {
-  return (float8)(texels.left.s26ae, texels.right.s26ae);
-}
-
-static inline float8 last_channels(EightTexels texels) {
-  return (float8)(texels.left.s37bf, texels.right.s37bf);
-}
-
-static inline float8 confidences(EightTexels texels) {
+static inline LaneFloat confidences(LaneTexels texels) {
   return last_channels(texels);
 }
 
@@ -188,13 +141,15 @@ static inline void store_history4(STORED_HISTORY texels, int index, float16 valu
 #endif
 }
 
-// The first `count` of eight.
-static inline void store_history8(STORED_HISTORY texels, int index, int count, EightTexels row) {
-  if (count >= 8) {
+// The first `count`.
+static inline void store_history_lanes(STORED_HISTORY texels, int index, int count, LaneTexels row) {
+#if LANES == 8
+  if (count >= kLanes) {
     store_history4(texels, index, row.left);
     store_history4(texels, index + 4, row.right);
     return;
   }
+#endif
   for (int i = 0; i < count; ++i) {
     store_history(texels, index + i, first_texel(row));
     row = push_texel(row, first_texel(row));
@@ -216,27 +171,27 @@ static inline float load_alpha(AlphaPlane plane, int index) {
 #endif
 }
 
-// As many values from `index` on as lanes count.
-static inline float8 load_alpha_lanes(AlphaPlane plane, int index) {
-#if !ON_CPU
-  return (float8)(load_alpha(plane, index));
-#elif HISTORY_FORMAT == HALF
+// The values from `index` on, one a lane.
+static inline LaneFloat load_alpha_lanes(AlphaPlane plane, int index) {
+#if LANES == 8 && HISTORY_FORMAT == HALF
   // Through private memory: vload_half8 would want 16-byte alignment.
   const ushort8 bits = vload8(0, (__global const ushort*)plane.texels + index);
   return vload_half8(0, (__private const half*)&bits);
-#else
+#elif LANES == 8
   return vload8(0, plane.texels + index);
+#else
+  return load_alpha(plane, index);
 #endif
 }
 
-// The first `count` of eight.
-static inline void store_alpha8(STORED_HISTORY texels, int index, int count, float8 alpha) {
+// The first `count`.
+static inline void store_alpha_lanes(STORED_HISTORY texels, int index, int count, LaneFloat alpha) {
   alpha = clamp(alpha, -FINITE_HALF_MAX, FINITE_HALF_MAX);
-  for (int i = 0; i < min(count, 8); ++i) {
+  for (int i = 0; i < min(count, (int)kLanes); ++i) {
 #if HISTORY_FORMAT == HALF
-    vstore_half_rte(alpha.s0, index + i, texels);
+    vstore_half_rte(FIRST_LANE(alpha), index + i, texels);
 #else
-    texels[index + i] = alpha.s0;
+    texels[index + i] = FIRST_LANE(alpha);
 #endif
     alpha = NEXT_LANES(alpha);
   }

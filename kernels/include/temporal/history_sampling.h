@@ -49,22 +49,22 @@ static inline Neighbourhood load_neighbourhood_clamped(HistoryLayer layer, int x
   return around;
 }
 
-// The weights of the four texels around each of eight places on one axis; where TAPS is 4 the outer two are 0.
+// The weights of the four texels around each lane's place on one axis; where TAPS is 4 the outer two are 0.
 typedef struct Cubic {
-  float8 w0, w1, w2, w3;
+  LaneFloat w0, w1, w2, w3;
 } Cubic;
 
-static inline Cubic tent_weights(float8 f) {
-  const Cubic tent = {(float8)(0.0f), 1.0f - f, f, (float8)(0.0f)};
+static inline Cubic tent_weights(LaneFloat f) {
+  const Cubic tent = {(LaneFloat)(0.0f), 1.0f - f, f, (LaneFloat)(0.0f)};
   return tent;
 }
 
 // Returns Keys' weights, "Cubic Convolution Interpolation for Digital Image Processing", 1981, with his `a`.
-static inline Cubic cubic_weights(float8 f, float a) {
+static inline Cubic cubic_weights(LaneFloat f, float a) {
 #if TAPS == 4
   return tent_weights(f);
 #else
-  const float8 rest = 1.0f - f;
+  const LaneFloat rest = 1.0f - f;
   Cubic w;
   w.w0 = a * f * rest * rest;
   w.w3 = a * rest * f * f;
@@ -76,7 +76,7 @@ static inline Cubic cubic_weights(float8 f, float a) {
 
 // Returns the four weights of the first place.
 static inline float4 first_weights(Cubic w) {
-  return (float4)(w.w0.s0, w.w1.s0, w.w2.s0, w.w3.s0);
+  return (float4)(FIRST_LANE(w.w0), FIRST_LANE(w.w1), FIRST_LANE(w.w2), FIRST_LANE(w.w3));
 }
 
 // Returns the weights with the second place as the first, and the first as the last.
@@ -89,8 +89,8 @@ static inline bool is_middle_tap(int i) {
   return i == 1 || i == 2;
 }
 
-// Returns the weights of the middle taps, 1 and 2, in a bilinear blend at eight places.
-static inline float8 middle_weight(int i, float8 fraction) {
+// Returns the weights of the middle taps, 1 and 2, in a bilinear blend.
+static inline LaneFloat middle_weight(int i, LaneFloat fraction) {
   return i == 1 ? 1.0f - fraction : fraction;
 }
 
@@ -120,17 +120,18 @@ static inline float4 sample_neighbourhood(Neighbourhood around, float4 x, float4
 static inline float4 sample_history(HistoryLayer layer, int x0, int y0, bool inside, float4 x, float4 y) {
 #if TAPS == 4
   const int index = (y0 + 1) * layer.width + x0 + 1;
-  if (ON_CPU && inside)
+  if (LANES == 8 && inside)
     return blend_pairs(load_history2(layer, index), load_history2(layer, index + layer.width), x, y);
   const Neighbourhood around = load_neighbourhood_clamped(layer, x0, y0);
   return blend_pairs(around.row1.s456789ab, around.row2.s456789ab, x, y);
 #else
   const Neighbourhood around =
-      ON_CPU && inside ? load_neighbourhood(layer, x0, y0) : load_neighbourhood_clamped(layer, x0, y0);
+      LANES == 8 && inside ? load_neighbourhood(layer, x0, y0) : load_neighbourhood_clamped(layer, x0, y0);
   return sample_neighbourhood(around, x, y);
 #endif
 }
 
+#if LANES == 8
 // Texels of a row, blended or compared; of the last four only the first three count.
 typedef struct TwelveTexels {
   float16 first, second, third;
@@ -142,21 +143,21 @@ static inline TwelveTexels load_history12(HistoryLayer layer, int index) {
   return row;
 }
 
-static inline EightTexels next_texels(TwelveTexels row) {
-  const EightTexels next = {(float16)(row.first.s456789ab, row.first.scdef, row.second.s0123),
+static inline LaneTexels next_texels(TwelveTexels row) {
+  const LaneTexels next = {(float16)(row.first.s456789ab, row.first.scdef, row.second.s0123),
                             (float16)(row.second.s456789ab, row.second.scdef, row.third.s0123)};
   return next;
 }
 
-static inline EightTexels second_texels(TwelveTexels row) {
-  const EightTexels next = {(float16)(row.first.s89abcdef, row.second.s01234567),
+static inline LaneTexels second_texels(TwelveTexels row) {
+  const LaneTexels next = {(float16)(row.first.s89abcdef, row.second.s01234567),
                             (float16)(row.second.s89abcdef, row.third.s01234567)};
   return next;
 }
 
 #if TAPS != 4
-static inline EightTexels third_texels(TwelveTexels row) {
-  const EightTexels next = {(float16)(row.first.scdef, row.second.s0123, row.second.s456789ab),
+static inline LaneTexels third_texels(TwelveTexels row) {
+  const LaneTexels next = {(float16)(row.first.scdef, row.second.s0123, row.second.s456789ab),
                             (float16)(row.second.scdef, row.third.s0123, row.third.s456789ab)};
   return next;
 }
@@ -166,26 +167,27 @@ static inline float16 blend_outer(float16 row0, float16 row1, float16 row2, floa
   return MULTIPLY_ADD(row1, (float16)(y.y), MULTIPLY_ADD(row2, (float16)(y.z), outer));
 }
 
-// Returns the cubic at eight places of a row that lie alike among their texels, held in the range of the middle four of
+// Returns the cubic at places of a row that lie alike among their texels, held in the range of the middle four of
 // each. Four rows of texels begin at the first of those around the first place.
-static inline EightTexels blend_rows(TwelveTexels row0, TwelveTexels row1, TwelveTexels row2, TwelveTexels row3,
-                                     float4 x, float4 y) {
+static inline LaneTexels blend_rows(TwelveTexels row0, TwelveTexels row1, TwelveTexels row2, TwelveTexels row3,
+                                    float4 x, float4 y) {
   const TwelveTexels rows = {blend_outer(row0.first, row1.first, row2.first, row3.first, y),
                              blend_outer(row0.second, row1.second, row2.second, row3.second, y),
                              blend_outer(row0.third, row1.third, row2.third, row3.third, y)};
   const TwelveTexels low = {min(row1.first, row2.first), min(row1.second, row2.second), min(row1.third, row2.third)};
   const TwelveTexels high = {max(row1.first, row2.first), max(row1.second, row2.second), max(row1.third, row2.third)};
-  const EightTexels at1 = next_texels(rows), at2 = second_texels(rows), at3 = third_texels(rows);
-  const EightTexels low1 = next_texels(low), low2 = second_texels(low);
-  const EightTexels high1 = next_texels(high), high2 = second_texels(high);
+  const LaneTexels at1 = next_texels(rows), at2 = second_texels(rows), at3 = third_texels(rows);
+  const LaneTexels low1 = next_texels(low), low2 = second_texels(low);
+  const LaneTexels high1 = next_texels(high), high2 = second_texels(high);
   const float16 left = MULTIPLY_ADD(rows.first, (float16)(x.x), at2.left * x.z) +
                        MULTIPLY_ADD(at1.left, (float16)(x.y), at3.left * x.w);
   const float16 right = MULTIPLY_ADD(rows.second, (float16)(x.x), at2.right * x.z) +
                         MULTIPLY_ADD(at1.right, (float16)(x.y), at3.right * x.w);
-  const EightTexels held = {min(max(left, min(low1.left, low2.left)), max(high1.left, high2.left)),
+  const LaneTexels held = {min(max(left, min(low1.left, low2.left)), max(high1.left, high2.left)),
                             min(max(right, min(low1.right, low2.right)), max(high1.right, high2.right))};
   return held;
 }
+#endif
 #endif
 
 // Returns alpha as sample_history() returns colour.

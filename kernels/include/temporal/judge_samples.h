@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The evidence of a tile's samples about the history at their places. On a CPU eight columns of a row lie in the lanes
-// of a vector: the middle six are judged, and the outer two are only their neighbours. Elsewhere samples come one by
-// one: the same code for vectors takes Mesa's compiler four times as long.
+// The evidence of a tile's samples about the history at their places. Eight lanes hold eight columns of a
+// row: the middle six are judged, and the outer two are only their neighbours. In one lane samples come one by one.
 //
 // Option: LAYERS  0 (default) | 1: samples of a near layer do not judge
 #pragma once
@@ -19,7 +18,7 @@
 #define LAYERS 0
 #endif
 
-enum { kJudgedAtOnce = ON_CPU ? kLanes - 2 : 1 };  // samples of a row
+enum { kJudgedAtOnce = LANES == 8 ? kLanes - 2 : 1 };  // samples of a row
 
 enum { kHistoryAhead = 4 * kTemporalTile, kColourAhead = 16 };  // texels of history and samples to prefetch
 
@@ -35,16 +34,16 @@ typedef struct Past {
 
 #if MOTION
 // Loads the trust of the first lane's sample, and turns to the next.
-static inline void load_next_trust(const Past* past, const TemporalTileParams* params, LaneBits* columns, int y,
-                                   Lanes* trust) {
+static inline void load_next_trust(const Past* past, const TemporalTileParams* params, LaneInt* columns, int y,
+                                   LaneFloat* trust) {
   FIRST_LANE(*trust) = past->reprojection[4 * texel_index(params->reprojection, FIRST_LANE(*columns), y) + 2];
   *trust = NEXT_LANES(*trust);
   *columns = NEXT_LANES(*columns);
 }
 
 // Moves the first lane's place by its sample's motion and the phase of the texels there, and turns to the next.
-static inline void follow_next_motion(const Past* past, const TemporalTileParams* params, LaneBits* columns, int y,
-                                      Lanes* at_x, Lanes* at_y) {
+static inline void follow_next_motion(const Past* past, const TemporalTileParams* params, LaneInt* columns, int y,
+                                      LaneFloat* at_x, LaneFloat* at_y) {
   const int sample = 4 * texel_index(params->reprojection, FIRST_LANE(*columns), y);
   const float before_x = FIRST_LANE(*at_x) + past->reprojection[sample] * params->motion_x;
   const float before_y = FIRST_LANE(*at_y) + past->reprojection[sample + 1] * params->motion_y;
@@ -58,9 +57,9 @@ static inline void follow_next_motion(const Past* past, const TemporalTileParams
 #endif
 
 // Moves samples of row y to their places in the previous history, output pixels. Returns which are trusted.
-static inline LaneBits find_in_history(const Past* past, const TemporalTileParams* params, TileReprojection tile,
-                                       LaneBits columns, int y, Lanes* at_x, Lanes* at_y) {
-  Lanes trust = 1.0f;
+static inline LaneMask find_in_history(const Past* past, const TemporalTileParams* params, TileReprojection tile,
+                                       LaneInt columns, int y, LaneFloat* at_x, LaneFloat* at_y) {
+  LaneFloat trust = 1.0f;
   if (tile.is_rigid) {
     *at_x -= tile.phase_x + (float)tile.step_x;
     *at_y -= tile.phase_y + (float)tile.step_y;
@@ -74,9 +73,9 @@ static inline LaneBits find_in_history(const Past* past, const TemporalTileParam
 
 #if LAYERS
 // Returns which samples show the far layer, or the only one: history that is judged knows nothing of a near one.
-static inline LaneBits are_of_far_layer(const Past* past, DEPTH_TEXELS depth, TexelLayout layout,
-                                        const TemporalTileParams* params, LaneBits columns, int y) {
-  Lanes far = 0.0f;
+static inline LaneMask are_of_far_layer(const Past* past, DEPTH_TEXELS depth, TexelLayout layout,
+                                        const TemporalTileParams* params, LaneInt columns, int y) {
+  LaneFloat far = 0.0f;
   for (int lane = 0; lane < kLanes; ++lane) {
     const LayerSplit split = past->splits[y * params->frame.width + FIRST_LANE(columns)];
     const bool is_far = !is_split(split) || load_depth(depth, layout, FIRST_LANE(columns), y) < between_of(split);
@@ -89,18 +88,18 @@ static inline LaneBits are_of_far_layer(const Past* past, DEPTH_TEXELS depth, Te
 #endif
 
 // Returns which samples of row y, at these places, may judge history, and the index of the texel of each.
-static inline LaneBits find_judged(const Past* past, DEPTH_TEXELS depth, TexelLayout depth_layout,
-                                   const TemporalTileParams* params, TileReprojection tile, LaneBits columns, int y,
-                                   Lanes place_x, float place_y, LaneBits* index) {
+static inline LaneMask find_judged(const Past* past, DEPTH_TEXELS depth, TexelLayout depth_layout,
+                                   const TemporalTileParams* params, TileReprojection tile, LaneInt columns, int y,
+                                   LaneFloat place_x, float place_y, LaneInt* index) {
   const int width = params->output_width, height = params->output_height;
-  Lanes at_x = place_x, at_y = place_y;
-  LaneBits judged = find_in_history(past, params, tile, columns, y, &at_x, &at_y);
+  LaneFloat at_x = place_x, at_y = place_y;
+  LaneMask judged = find_in_history(past, params, tile, columns, y, &at_x, &at_y);
   judged &= (at_x >= 0.0f) & (at_y >= 0.0f) & (at_x < (float)width) & (at_y < (float)height);
   if (params->parity >= 0) judged &= ((columns + y) & 1) == params->parity;
 #if LAYERS
   if (past->splits != 0) judged &= are_of_far_layer(past, depth, depth_layout, params, columns, y);
 #endif
-  *index = select((LaneBits)(0), CONVERT_LANES(at_y) * width + CONVERT_LANES(at_x), judged);
+  *index = select((LaneInt)(0), to_lane_int(at_y) * width + to_lane_int(at_x), judged);
   return judged;
 }
 
@@ -108,20 +107,21 @@ static inline LaneBits find_judged(const Past* past, DEPTH_TEXELS depth, TexelLa
 
 // CellEvidence and TileEvidence of each lane's samples, but for outliers.
 typedef struct LaneEvidence {
-  Lanes brightening, brighter, count, light, history_error, neighbour_error;
+  LaneFloat brightening, brighter, count, light, history_error, neighbour_error;
 } LaneEvidence;
 
-static inline Lanes where(LaneBits lanes, Lanes value) {
-  return select((Lanes)(0.0f), value, lanes);
+static inline LaneFloat where(LaneMask lanes, LaneFloat value) {
+  return select((LaneFloat)(0.0f), value, lanes);
 }
 
 // Returns what samples say of history by their own luma, history's, and that of their neighbours' mean, which counts
 // where all four are valid. What is not `judged` says nothing.
-static inline LaneEvidence judge_lanes(Lanes own, Lanes known, Lanes beside, LaneBits all_valid, LaneBits judged) {
-  const Lanes scale = 1.0f / (1.0f + own + known);
-  const Lanes change = (own - known) * scale;
+static inline LaneEvidence judge_lanes(LaneFloat own, LaneFloat known, LaneFloat beside, LaneMask all_valid,
+                                       LaneMask judged) {
+  const LaneFloat scale = 1.0f / (1.0f + own + known);
+  const LaneFloat change = (own - known) * scale;
   LaneEvidence evidence;
-  evidence.count = where(judged, (Lanes)(1.0f));
+  evidence.count = where(judged, (LaneFloat)(1.0f));
   evidence.brightening = where(judged, change);
   evidence.brighter =
       where(change > LUMA_CHANGE_MIN, evidence.count) - where(change < -LUMA_CHANGE_MIN, evidence.count);
@@ -137,17 +137,17 @@ static inline void add_to_cell(CellEvidence* cell, float brightening, float brig
   cell->count += count;
 }
 
-#if ON_CPU
-// The evidence of a tile's rows, those of upper and of lower cells.
-typedef struct RowsEvidence {
-  LaneEvidence upper, lower;
-  float8 outliers;
-} RowsEvidence;
-
-// The four neighbours of each sample of a row.
+// The four neighbours of each sample.
 typedef struct Neighbours {
   SampleLanes left, right, above, below;
 } Neighbours;
+
+#if LANES == 8
+// The evidence of a tile's rows, those of upper and of lower cells.
+typedef struct RowsEvidence {
+  LaneEvidence upper, lower;
+  LaneFloat outliers;
+} RowsEvidence;
 
 // The lane on the left of each; meaningless in the outermost one, as in from_right().
 static inline SampleLanes from_left(const SampleLanes* row) {
@@ -174,19 +174,19 @@ static inline Neighbours neighbours_of(const SampleLanes* above, const SampleLan
 }
 
 // Loads the samples of row y from column x on; `columns` are the same, and both are clamped to the viewport.
-static inline SampleLanes load_row(COLOUR_TEXELS colour, const SourceFrame* frame, int x, int8 columns, int y) {
+static inline SampleLanes load_row(COLOUR_TEXELS colour, const SourceFrame* frame, int x, LaneInt columns, int y) {
   const int row = clamp(y, 0, frame->height - 1);
   if (x < 0 || x + kLanes > frame->width) return compare_lanes(load_samples(colour, frame->colour, columns, row));
   COLOUR_ROW from = colour_row(colour, frame->colour, row);
-  const EightTexels texels = {load_colour4(colour, from, x), load_colour4(colour, from, x + 4)};
+  const LaneTexels texels = {load_colour4(colour, from, x), load_colour4(colour, from, x + 4)};
   return compare_lanes(texels);
 }
 
 // Adds what the samples of a row say.
-static inline void add_row(RowsEvidence* rows, EightTexels history, const SampleLanes* own, const Neighbours* near,
-                           int8 judged, bool is_upper) {
+static inline void add_row(RowsEvidence* rows, LaneTexels history, const SampleLanes* own, const Neighbours* near,
+                           LaneMask judged, bool is_upper) {
   judged &= fabs(confidences(history)) >= JUDGED_CONFIDENCE_MIN;
-  const float8 beside = 0.25f * (near->left.luma + near->right.luma + near->above.luma + near->below.luma);
+  const LaneFloat beside = 0.25f * (near->left.luma + near->right.luma + near->above.luma + near->below.luma);
   const LaneEvidence found =
       judge_lanes(max(own->luma, 0.0f), max(luma_of(history), 0.0f), max(beside, 0.0f),
                   near->left.valid & near->right.valid & near->above.valid & near->below.valid, judged);
@@ -198,11 +198,12 @@ static inline void add_row(RowsEvidence* rows, EightTexels history, const Sample
   sum->history_error += found.history_error;
   sum->neighbour_error += found.neighbour_error;
   const OutlierRange range = outlier_range(history);
-  const int8 outliers = judged & are_outliers(own, range);
+  const LaneMask outliers = judged & are_outliers(own, range);
   if (!any_lane(outliers)) return;
-  const int8 beside_count = are_outliers(&near->left, range) + are_outliers(&near->right, range) +
-                            are_outliers(&near->above, range) + are_outliers(&near->below, range);  // each counts -1
-  rows->outliers += where(outliers & (beside_count <= -2), (float8)(1.0f));
+  const LaneInt beside_count =
+      are_outliers(&near->left, range) + are_outliers(&near->right, range) +
+      are_outliers(&near->above, range) + are_outliers(&near->below, range);  // each counts -1: these are vectors
+  rows->outliers += where(outliers & (beside_count <= -2), (LaneFloat)(1.0f));
 }
 
 static inline float8 add_halves(float8 a, float8 b) {
@@ -214,24 +215,26 @@ static inline float8 add_quarters(float8 a, float8 b) {
 }
 
 // Returns the sum of the lanes of each of eight vectors.
-static inline float8 sum_lanes(float8 a, float8 b, float8 c, float8 d, float8 e, float8 f, float8 g, float8 h) {
+static inline float8 sum_lanes(float8 a, float8 b, float8 c, float8 d, float8 e, float8 f,
+                                  float8 g, float8 h) {
   const float8 abcd = add_quarters(add_halves(a, b), add_halves(c, d));
   const float8 efgh = add_quarters(add_halves(e, f), add_halves(g, h));
   return (float8)(abcd.even + abcd.odd, efgh.even + efgh.odd);
 }
 
 // Adds rows whose lanes at `left` lie in the left cells.
-static inline void add_rows(TileEvidence* tile, const RowsEvidence* rows, int8 left) {
+static inline void add_rows(TileEvidence* tile, const RowsEvidence* rows, LaneMask left) {
   const LaneEvidence *upper = &rows->upper, *lower = &rows->lower;
-  const float8 changes =
-      sum_lanes(where(left, upper->brightening), where(~left, upper->brightening), where(left, lower->brightening),
-                where(~left, lower->brightening), upper->light + lower->light,
+  const LaneMask right = mask_not(left);
+  const LaneFloat changes =
+      sum_lanes(where(left, upper->brightening), where(right, upper->brightening), where(left, lower->brightening),
+                where(right, lower->brightening), upper->light + lower->light,
                 upper->history_error + lower->history_error, upper->neighbour_error + lower->neighbour_error,
                 rows->outliers);
-  const float8 counts = sum_lanes(where(left, upper->brighter), where(~left, upper->brighter),
-                                  where(left, lower->brighter), where(~left, lower->brighter),
-                                  where(left, upper->count), where(~left, upper->count),
-                                  where(left, lower->count), where(~left, lower->count));
+  const LaneFloat counts = sum_lanes(where(left, upper->brighter), where(right, upper->brighter),
+                                  where(left, lower->brighter), where(right, lower->brighter),
+                                  where(left, upper->count), where(right, upper->count),
+                                  where(left, lower->count), where(right, lower->count));
   add_to_cell(&tile->cells[0], changes.s0, counts.s0, counts.s4);
   add_to_cell(&tile->cells[1], changes.s1, counts.s1, counts.s5);
   add_to_cell(&tile->cells[2], changes.s2, counts.s2, counts.s6);
@@ -250,11 +253,10 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
                                  TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
                                  TileReprojection tile, SampleRange samples, int first) {
   const SourceFrame* frame = &params->frame;
-  const int8 lanes = (int8)(0, 1, 2, 3, 4, 5, 6, 7);
   const int x = first - 1;  // the left neighbour
-  const int8 columns = clamp(x + lanes, (int8)(0), (int8)(frame->width - 1));
-  const int8 middle = (lanes >= 1) & (lanes <= min(samples.last.x - x, (int)kJudgedAtOnce));
-  const float8 place_x = convert_float8(x + lanes) * params->spacing_x + params->start_x;
+  const LaneInt columns = clamp(x + LANE_NUMBERS, (LaneInt)(0), (LaneInt)(frame->width - 1));
+  const LaneMask middle = (LANE_NUMBERS >= 1) & (LANE_NUMBERS <= min(samples.last.x - x, (int)kJudgedAtOnce));
+  const LaneFloat place_x = to_lane_float(x + LANE_NUMBERS) * params->spacing_x + params->start_x;
   const LaneEvidence none = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   RowsEvidence rows = {none, none, 0.0f};
   SampleLanes above = load_row(colour, frame, x, columns, samples.first.y - 1);
@@ -263,8 +265,8 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
     will_read_colour(colour, frame->colour, x + kColourAhead, y + 1);
     const SampleLanes below = load_row(colour, frame, x, columns, y + 1);
     const float place_y = (float)y * params->spacing_y + params->start_y;
-    int8 index;
-    int8 judged = find_judged(past, depth, depth_layout, params, tile, columns, y, place_x, place_y, &index);
+    LaneInt index;
+    LaneMask judged = find_judged(past, depth, depth_layout, params, tile, columns, y, place_x, place_y, &index);
     judged &= middle & own.valid;
     if (any_lane(judged)) {
       will_read_history(past->history, index.s1 + kHistoryAhead);
@@ -275,7 +277,7 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
     above = own;
     own = below;
   }
-  add_rows(evidence, &rows, convert_int8(place_x) % kTemporalTile < kTemporalCell);
+  add_rows(evidence, &rows, to_lane_int(place_x) % kTemporalTile < kTemporalCell);
 }
 #else
 // Adds what the tile's samples in column x say.
@@ -292,16 +294,19 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
     const float4 before = load_history(past->history, index);
     const float4 own = sample_at(colour, frame, x, y);
     if (fabs(before.w) < JUDGED_CONFIDENCE_MIN || !is_valid(own)) continue;
-    // The sample and its neighbours in the first five lanes.
-    const EightTexels five = {
-        (float16)(own, sample_at(colour, frame, x - 1, y - aside), sample_at(colour, frame, x + 1, y + aside),
-                  sample_at(colour, frame, x + aside, y - 1)),
-        (float16)(sample_at(colour, frame, x - aside, y + 1), before, before, before)};
-    const SampleLanes all = compare_lanes(five);
-    const float beside = 0.25f * (all.luma.s1 + all.luma.s2 + all.luma.s3 + all.luma.s4);
-    const int all_valid = all.valid.s1 & all.valid.s2 & all.valid.s3 & all.valid.s4;
+    const SampleLanes of_own = compare_lanes(own);
+    const Neighbours near = {compare_lanes(sample_at(colour, frame, x - 1, y - aside)),
+                             compare_lanes(sample_at(colour, frame, x + 1, y + aside)),
+                             compare_lanes(sample_at(colour, frame, x + aside, y - 1)),
+                             compare_lanes(sample_at(colour, frame, x - aside, y + 1))};
+    const OutlierRange range = outlier_range(before);
+    const int outliers_beside = are_outliers(&near.left, range) + are_outliers(&near.right, range) +
+                                are_outliers(&near.above, range) + are_outliers(&near.below, range);
+    if (are_outliers(&of_own, range) && outliers_beside >= 2) evidence->outliers += 1.0f;
+    const float beside = 0.25f * (near.left.luma + near.right.luma + near.above.luma + near.below.luma);
+    const bool all_valid = near.left.valid & near.right.valid & near.above.valid & near.below.valid;
     const LaneEvidence found =
-        judge_lanes(max(all.luma.s0, 0.0f), max(all.luma.s5, 0.0f), max(beside, 0.0f), all_valid, 1);
+        judge_lanes(max(of_own.luma, 0.0f), max(luma_of(before), 0.0f), max(beside, 0.0f), all_valid, true);
     evidence->brightening += found.brightening;
     evidence->brighter += found.brighter;
     evidence->count += found.count;
@@ -311,9 +316,6 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
     const int row = (int)place_y % kTemporalTile / kTemporalCell;
     const int column = (int)place_x % kTemporalTile / kTemporalCell;
     add_to_cell(&evidence->cells[2 * row + column], found.brightening, found.brighter, found.count);
-    const EightTexels known = {(float16)(before, before, before, before), (float16)(before, before, before, before)};
-    const int8 outliers = are_outliers(&all, outlier_range(known));
-    if (outliers.s0 != 0 && outliers.s1 + outliers.s2 + outliers.s3 + outliers.s4 <= -2) evidence->outliers += 1.0f;
   }
 }
 #endif

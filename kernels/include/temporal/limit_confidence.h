@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Limits the confidence of fetched history, and applies the gain of its light: eight output pixels of one row and one
-// tile at a time.
+// Limits the confidence of fetched history, and applies the gain of its light: output pixels of one row and one
+// tile.
 #pragma once
 
 #include "motion/motion_edge.h"
@@ -9,37 +9,37 @@
 
 // Evidence about history: how much it is worth.
 typedef struct Evidence {
-  float8 confidence;  // within [0, CONFIDENCE_MAX]
-  float8 rejection;   // within [0, 1]: how far history is to be brought into the range of this frame's samples
+  LaneFloat confidence;  // within [0, CONFIDENCE_MAX]
+  LaneFloat rejection;   // within [0, 1]: how far history is to be brought into the range of this frame's samples
 } Evidence;
 
 // Returns the most confidence for a trust in [0, 1]: all of it for 1, 0 for 0.
-static inline float8 most_confidence(float8 trust) {
+static inline LaneFloat most_confidence(LaneFloat trust) {
   return trust / (1.0f + 1.0f / CONFIDENCE_MAX - trust);
 }
 
 // Returns how far between texels a place lies: 0 on one, 1 half-way between four and near there.
-static inline float8 between_texels(float8 fraction_x, float8 fraction_y) {
+static inline LaneFloat between_texels(LaneFloat fraction_x, LaneFloat fraction_y) {
   return min(4.0f * (fraction_x * (1.0f - fraction_x) + fraction_y * (1.0f - fraction_y)), 1.0f);
 }
 
 // Limits confidence by what resampling costs.
-static inline float8 after_resampling(float8 confidence, float8 between) {
+static inline LaneFloat after_resampling(LaneFloat confidence, LaneFloat between) {
   return confidence / (1.0f + RESAMPLING_COST * between * confidence);
 }
 
 // Returns the evidence of history from which nothing is taken.
 static inline Evidence full_evidence(const FetchedHistory* history) {
-  const Evidence evidence = {history->confidence, (float8)(0.0f)};
+  const Evidence evidence = {history->confidence, (LaneFloat)(0.0f)};
   return evidence;
 }
 
 // Limits confidence by what resampling, disocclusion, reactive values and motion edges leave of it.
-static inline Evidence limit_confidence(const FetchedHistory* history, const EightReprojections* motion) {
-  const float8 between = between_texels(history->fraction_x, history->fraction_y);
-  float8 w = after_resampling(history->confidence, between);
+static inline Evidence limit_confidence(const FetchedHistory* history, const Reprojections* motion) {
+  const LaneFloat between = between_texels(history->fraction_x, history->fraction_y);
+  LaneFloat w = after_resampling(history->confidence, between);
   w = select(w, min(w, RESAMPLED_CONFIDENCE_MAX), between > RESAMPLED_MIN);
-  const float8 trust = motion->trust;
+  const LaneFloat trust = motion->trust;
   w = min(w, most_confidence(trust));
   w = w / (1.0f + EDGE_COST * smooth_step(motion->motion_edge, COSTLY_EDGE_MIN, COSTLY_EDGE_MAX) * w);
   const Evidence evidence = {w, max(1.0f - trust, edge_rejection(motion->motion_edge))};
@@ -49,7 +49,7 @@ static inline Evidence limit_confidence(const FetchedHistory* history, const Eig
 // ---- Relighting: the gain that temporal_light found for each tile, blended between tiles, and the rejection that it
 // found for each cell, blended between cells.
 
-// What eight pixels of a row, those of one tile, are to make of it.
+// What pixels of a row, those of one tile, are to make of it.
 typedef struct RowLight {
   float4 rejection;             // at the centres of four cells: the tile's two, and one on each side
   float left_gain, right_gain;  // at the tile's edges
@@ -107,7 +107,7 @@ static inline RowLight light_of_row(__global const TileLight* light, const Tempo
   const float2 gains = gains_of_row(light, params, tile_x, tiles.above);
   const float2 gain = gains + (gains_of_row(light, params, tile_x, tiles.below) - gains) * tiles.down;
   const RowLight row = {upper + (rejections_of_row(light, params, tile_x, cells.below) - upper) * cells.down, gain.x,
-                        gain.y, ON_CPU ? 0 : x % kTemporalTile};
+                        gain.y, x % kTemporalTile};
   return row;
 }
 
@@ -124,20 +124,20 @@ static inline bool has_even_light(__global const TileLight* light, const Tempora
 }
 
 // Interpolates from a tile's left edge to its right, at the centres of the pixels' columns.
-static inline float8 ramp(RowLight light) {
-  const float8 along = 0.125f * convert_float8(light.column + LANE_NUMBERS) + 0.0625f;
+static inline LaneFloat ramp(RowLight light) {
+  const LaneFloat along = 0.125f * to_lane_float(light.column + LANE_NUMBERS) + 0.0625f;
   return light.left_gain + (light.right_gain - light.left_gain) * along;
 }
 
 // Interpolates between the centres of four cells, at the centres of the pixels' columns.
-static inline float8 ramp_cells(RowLight light) {
-#if ON_CPU
-  const float8 along = (float8)(0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f);
-  const float8 left = light.rejection.s00111122, right = light.rejection.s11222233;
+static inline LaneFloat ramp_cells(RowLight light) {
+#if LANES == 8
+  const LaneFloat along = (LaneFloat)(0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f);
+  const LaneFloat left = light.rejection.s00111122, right = light.rejection.s11222233;
 #else
   const float at = 0.25f * (float)light.column + 0.625f;  // 0 at the first of the four
   const float4 cells = at < 1.0f ? light.rejection : at < 2.0f ? light.rejection.yzww : light.rejection.zwww;
-  const float8 along = (float8)(at - floor(at)), left = (float8)(cells.x), right = (float8)(cells.y);
+  const float along = at - floor(at), left = cells.x, right = cells.y;
 #endif
   return left + (right - left) * along;
 }
@@ -145,15 +145,13 @@ static inline float8 ramp_cells(RowLight light) {
 // Limits confidence by the cells' rejection, too.
 static inline void reject_by_light(Evidence* evidence, RowLight light) {
   if (!(light.rejection.x + light.rejection.y + light.rejection.z + light.rejection.w > 0.0f)) return;
-  const float8 rejection = ramp_cells(light);
+  const LaneFloat rejection = ramp_cells(light);
   evidence->rejection = max(evidence->rejection, rejection);
   evidence->confidence = min(evidence->confidence, most_confidence(1.0f - rejection));
 }
 
 // Returns history in this frame's light.
-static inline EightTexels relight(EightTexels history, RowLight light) {
+static inline LaneTexels relight(LaneTexels history, RowLight light) {
   if (light.left_gain == 1.0f && light.right_gain == 1.0f) return history;
-  const float8 gain = ramp(light);
-  const EightTexels relit = {history.left * to_four_texels(gain.lo), history.right * to_four_texels(gain.hi)};
-  return relit;
+  return times(history, ramp(light));
 }

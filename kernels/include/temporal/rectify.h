@@ -8,108 +8,105 @@
 #include "temporal/constants.h"
 #include "temporal/frame_samples.h"
 
-// Returns in each channel of four texels the largest of that texel's channels, its last one included.
-static inline float16 largest_channels(float16 texels) {
-  const float16 pairs = max(texels, texels.s1032547698badcfe);
-  return max(pairs, pairs.s23016745ab89efcd);
+// A colour in each lane, in tone space.
+typedef struct Tone {
+  LaneFloat red, green, blue;
+} Tone;
+
+static inline LaneFloat largest_channel(Tone colour) {
+  return max(max(max(colour.red, colour.green), colour.blue), 0.0f);
 }
 
-// Returns in each channel of four texels the sum of that texel's channels.
-static inline float16 channel_sums(float16 texels) {
-  const float16 pairs = texels + texels.s1032547698badcfe;
-  return pairs + pairs.s23016745ab89efcd;
+static inline Tone to_tone(LaneTexels texels) {
+  const Tone light = {reds(texels), greens(texels), blues(texels)};
+  const LaneFloat divisor = 1.0f + largest_channel(light);
+  const Tone tone = {light.red / divisor, light.green / divisor, light.blue / divisor};
+  return tone;
 }
 
-static inline float16 without_alpha(float16 texels) {
-  return select(texels, (float16)(0.0f), LAST_CHANNELS);
+// One channel of the valid ones of a cross of samples: the first, and sums of the differences from it, which are small,
+// so that their squares lose no digits.
+typedef struct CrossChannel {
+  LaneFloat first, sum, squares;
+} CrossChannel;
+
+static inline void add_channel(CrossChannel* cross, LaneFloat tone, LaneMask valid, LaneMask is_first) {
+  const LaneFloat none = (LaneFloat)(0.0f);
+  cross->first = select(cross->first, tone, is_first);
+  const LaneFloat difference = select(none, tone - cross->first, valid);
+  cross->sum += difference;
+  cross->squares += difference * difference;
 }
 
-static inline float16 to_tone(float16 colours) {
-  const float16 light = without_alpha(colours);
-  return light / (1.0f + largest_channels(light));
+// The range that a pixel's surroundings allow in one channel: its middle, and how far from there.
+typedef struct ToneRange {
+  LaneFloat mean, deviation;
+} ToneRange;
+
+static inline ToneRange range_of_cross(const CrossChannel* cross, LaneFloat count) {
+  const LaneFloat mean = cross->sum / count;
+  const LaneFloat variance = cross->squares / count - mean * mean;
+  const ToneRange range = {cross->first + mean, BOX_SIZE * sqrt(max(variance, 0.0f))};
+  return range;
 }
 
-static inline float16 from_tone(float16 tone) {
-  return tone / max(1.0f - largest_channels(without_alpha(tone)), TONE_REST_MIN);
-}
-
-// Sums over the valid ones of a cross of samples around four pixels, in tone space.
-typedef struct CrossSums {
-  float16 first, sum, squares, count;
-} CrossSums;
-
-static inline CrossSums add_to_cross(CrossSums cross, float16 samples) {
-  const int16 valid = are_valid(samples);
-  const float16 tone = to_tone(samples), none = (float16)(0.0f);
-  cross.first = select(cross.first, tone, valid & (cross.count == none));
-  const float16 difference = select(none, tone - cross.first, valid);  // small, so that its square loses no digits
-  cross.sum += difference;
-  cross.squares += difference * difference;
-  cross.count += select(none, (float16)(1.0f), valid);
-  return cross;
-}
-
-typedef struct EightCrosses {
-  CrossSums left, right;
-} EightCrosses;
-
-static inline EightCrosses add_to_crosses(EightCrosses crosses, EightTexels samples) {
-  const EightCrosses sums = {add_to_cross(crosses.left, samples.left), add_to_cross(crosses.right, samples.right)};
-  return sums;
-}
-
-// The ranges that the surroundings of four pixels allow, in tone space: the mean of red, green and blue, and how far
-// from it. Without a valid sample nothing is known.
+// The ranges of the samples nearest to the pixels and the four beside each. Without a valid sample nothing is known.
 typedef struct ToneBoxes {
-  float16 mean, deviation;
-  int16 known;
+  ToneRange red, green, blue;
+  LaneMask known;
 } ToneBoxes;
 
-static inline ToneBoxes boxes_of(CrossSums cross) {
-  const float16 count = max(cross.count, 1.0f);
-  const float16 mean = cross.sum / count;
-  const float16 variance = cross.squares / count - mean * mean;
-  const ToneBoxes boxes = {cross.first + mean, BOX_SIZE * sqrt(max(variance, 0.0f)), cross.count > 0.0f};
-  return boxes;
-}
-
-// The ranges of the samples nearest to eight pixels and the four beside each.
-typedef struct EightBoxes {
-  ToneBoxes left, right;
-} EightBoxes;
-
-static inline EightBoxes boxes_around(COLOUR_TEXELS texels, const SourceFrame* frame, int8 x, int y) {
+static inline ToneBoxes boxes_around(COLOUR_TEXELS texels, const SourceFrame* frame, LaneInt x, int y) {
   const TexelLayout layout = frame->colour;
   const int last_x = frame->width - 1, last_y = frame->height - 1;
-  const float16 none = (float16)(0.0f);
-  const CrossSums empty = {none, none, none, none};
-  EightCrosses crosses = {empty, empty};
+  const LaneFloat none = (LaneFloat)(0.0f), one = (LaneFloat)(1.0f);
+  const CrossChannel empty = {none, none, none};
+  CrossChannel red = empty, green = empty, blue = empty;
+  LaneFloat count = none;
   UNROLL_ALWAYS(5)
   for (int i = 0; i < 5; ++i) {
     const int column = (i == 1) - (i == 2), row = (i == 3) - (i == 4);
-    const int8 columns = clamp(x + column, (int8)(0), (int8)(last_x));
-    crosses = add_to_crosses(crosses, load_samples(texels, layout, columns, clamp(y + row, 0, last_y)));
+    const LaneInt columns = clamp(x + column, (LaneInt)(0), (LaneInt)(last_x));
+    const LaneTexels samples = load_samples(texels, layout, columns, clamp(y + row, 0, last_y));
+    const LaneMask valid = are_valid(samples), is_first = valid & (count == none);
+    const Tone tone = to_tone(samples);
+    add_channel(&red, tone.red, valid, is_first);
+    add_channel(&green, tone.green, valid, is_first);
+    add_channel(&blue, tone.blue, valid, is_first);
+    count += select(none, one, valid);
   }
-  const EightBoxes boxes = {boxes_of(crosses.left), boxes_of(crosses.right)};
+  const LaneFloat divisor = max(count, 1.0f);
+  const ToneBoxes boxes = {range_of_cross(&red, divisor), range_of_cross(&green, divisor),
+                           range_of_cross(&blue, divisor), count > none};
   return boxes;
 }
 
-// Four texels of history moved to their boxes by `rejection` of the way, and the parts of their confidence that are
-// left: it falls by how far they lay outside.
+static inline LaneFloat step_into(ToneRange range, LaneFloat tone) {
+  return clamp(tone, range.mean - range.deviation, range.mean + range.deviation) - tone;
+}
+
+// History moved to its boxes by `rejection` of the way, and the part of its confidence that is left: it falls by how
+// far it lay outside.
 typedef struct Rectified {
-  float16 history;
-  float4 part;
+  LaneTexels history;
+  LaneFloat part;
 } Rectified;
 
-static inline Rectified rectify4(float16 history, float4 rejection, const ToneBoxes* boxes) {
-  const float16 share = to_four_texels(rejection);
-  const float16 tone = to_tone(history);
-  const float16 step = clamp(tone, boxes->mean - boxes->deviation, boxes->mean + boxes->deviation) - tone;
-  const float16 distance = channel_sums(fabs(step)), spread = channel_sums(boxes->deviation);
-  const float16 part = 1.0f - share * min(1.0f, distance / (spread + BOX_MARGIN));
-  const int16 moved = boxes->known & (share > 0.0f);
-  const Rectified rectified = {select(history, from_tone(tone + step * share), moved & (distance > 0.0f)),
-                               select((float16)(1.0f), part, moved).s048c};
+static inline Rectified rectify_texels(LaneTexels history, LaneFloat rejection, const ToneBoxes* boxes) {
+  const Tone tone = to_tone(history);
+  const Tone step = {step_into(boxes->red, tone.red), step_into(boxes->green, tone.green),
+                     step_into(boxes->blue, tone.blue)};
+  const LaneFloat distance = fabs(step.red) + fabs(step.green) + fabs(step.blue);
+  const LaneFloat spread = boxes->red.deviation + boxes->green.deviation + boxes->blue.deviation;
+  const LaneFloat part = 1.0f - rejection * min(1.0f, distance / (spread + BOX_MARGIN));
+  const Tone moved = {tone.red + step.red * rejection, tone.green + step.green * rejection,
+                      tone.blue + step.blue * rejection};
+  const LaneFloat rest = max(1.0f - largest_channel(moved), TONE_REST_MIN);
+  const LaneMask is_rejected = boxes->known & (rejection > 0.0f), is_moved = is_rejected & (distance > 0.0f);
+  const Rectified rectified = {texels_of(select(reds(history), moved.red / rest, is_moved),
+                                         select(greens(history), moved.green / rest, is_moved),
+                                         select(blues(history), moved.blue / rest, is_moved), last_channels(history)),
+                               select((LaneFloat)(1.0f), part, is_rejected)};
   return rectified;
 }
 
@@ -134,11 +131,12 @@ static inline float rectify_alpha(COLOUR_TEXELS texels, const SourceFrame* frame
   return alpha + (clamp(alpha, middle - deviation, middle + deviation) - alpha) * rejection;
 }
 
-// Rectifies the alphas of eight pixels.
-static inline float8 rectify_alphas(COLOUR_TEXELS texels, const SourceFrame* frame, int8 x, int y, float8 alphas,
-                                    float8 rejection) {
+// Rectifies the alphas of the pixels.
+static inline LaneFloat rectify_alphas(COLOUR_TEXELS texels, const SourceFrame* frame, LaneInt x, int y,
+                                       LaneFloat alphas, LaneFloat rejection) {
   for (int i = 0; i < kLanes; ++i) {
-    if (rejection.s0 > 0.0f) alphas.s0 = rectify_alpha(texels, frame, x.s0, y, alphas.s0, rejection.s0);
+    const float own = FIRST_LANE(rejection);
+    if (own > 0.0f) FIRST_LANE(alphas) = rectify_alpha(texels, frame, FIRST_LANE(x), y, FIRST_LANE(alphas), own);
     alphas = NEXT_LANES(alphas);
     rejection = NEXT_LANES(rejection);
     x = NEXT_LANES(x);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The reprojection of eight output pixels of a row: that of the sample nearest to each.
+// The reprojection of output pixels of a row: that of the sample nearest to each.
 #pragma once
 
 #include "motion/motion_edge.h"
@@ -7,35 +7,33 @@
 #include "texel.h"
 
 // As Reprojection, but in output pixels; trust is never NaN, and a motion edge of either frame is positive.
-typedef struct EightReprojections {
-  float8 x, y, trust, motion_edge;
-} EightReprojections;
+typedef struct Reprojections {
+  LaneFloat x, y, trust, motion_edge;
+} Reprojections;
 
 // Returns the reprojection of pixels that stand still.
-static inline EightReprojections no_motion(void) {
-  const EightReprojections none = {(float8)(0.0f), (float8)(0.0f), (float8)(1.0f), (float8)(0.0f)};
+static inline Reprojections no_motion(void) {
+  const Reprojections none = {(LaneFloat)(0.0f), (LaneFloat)(0.0f), (LaneFloat)(1.0f), (LaneFloat)(0.0f)};
   return none;
 }
 
 #if MOTION
-static inline EightReprojections load_reprojections(const TemporalParams* params, __global const float* reprojection,
-                                                    const NearestSamples* nearest) {
-  const int8 x = nearest->x;
+static inline Reprojections load_reprojections(const TemporalParams* params, __global const float* reprojection,
+                                               const NearestSamples* nearest) {
   __global const float* row = reprojection + 4 * row_index(params->reprojection, nearest->y);
-  const float4 r0 = vload4(x.s0, row), r1 = vload4(x.s1, row), r2 = vload4(x.s2, row), r3 = vload4(x.s3, row);
-  const float4 r4 = vload4(x.s4, row), r5 = vload4(x.s5, row), r6 = vload4(x.s6, row), r7 = vload4(x.s7, row);
-  EightReprojections found;
-  found.x = (float8)(r0.x, r1.x, r2.x, r3.x, r4.x, r5.x, r6.x, r7.x) * params->motion_x;
-  found.y = (float8)(r0.y, r1.y, r2.y, r3.y, r4.y, r5.y, r6.y, r7.y) * params->motion_y;
-  found.motion_edge = fabs((float8)(r0.w, r1.w, r2.w, r3.w, r4.w, r5.w, r6.w, r7.w));
-  found.trust = fmax((float8)(r0.z, r1.z, r2.z, r3.z, r4.z, r5.z, r6.z, r7.z), (float8)(0.0f));  // NaN is none
+  const LaneFloat4 own = gather4(row, nearest->x);
+  Reprojections found;
+  found.x = own.x * params->motion_x;
+  found.y = own.y * params->motion_y;
+  found.motion_edge = fabs(own.w);
+  found.trust = fmax(own.z, (LaneFloat)(0.0f));  // NaN is none
   return found;
 }
 #elif REACTIVE
-// Where nothing moves: the columns of the previous frame that show what eight samples do.
-static inline int8 previous_columns(const TemporalParams* params, int8 x) {
+// Where nothing moves: the columns of the previous frame that show what the samples do.
+static inline LaneInt previous_columns(const TemporalParams* params, LaneInt x) {
   const float ratio = (float)params->frame1.width / (float)params->frame0.width;
-  return min(convert_int8((convert_float8(x) + 0.5f) * ratio), (int8)(params->frame1.width - 1));
+  return min(to_lane_int((to_lane_float(x) + 0.5f) * ratio), (LaneInt)(params->frame1.width - 1));
 }
 
 static inline int previous_row(const TemporalParams* params, int y) {
@@ -44,20 +42,19 @@ static inline int previous_row(const TemporalParams* params, int y) {
 }
 
 // Returns the trust that the reactive values of both frames leave.
-static inline float8 trust_of_reactive(const TemporalParams* params, REACTIVE_TEXELS reactive0,
-                                       REACTIVE_TEXELS reactive1, const NearestSamples* nearest) {
+static inline LaneFloat trust_of_reactive(const TemporalParams* params, REACTIVE_TEXELS reactive0,
+                                          REACTIVE_TEXELS reactive1, const NearestSamples* nearest) {
   const TexelLayout now = params->frame0.reactive, before = params->frame1.reactive;
-  const int8 x = previous_columns(params, nearest->x);
+  const LaneInt x = previous_columns(params, nearest->x);
   const int y = previous_row(params, nearest->y);
-  return (1.0f - (float8)(load_reactive4(reactive0, now, nearest->x.lo, nearest->y),
-                          load_reactive4(reactive0, now, nearest->x.hi, nearest->y))) *
-         (1.0f - (float8)(load_reactive4(reactive1, before, x.lo, y), load_reactive4(reactive1, before, x.hi, y)));
+  return (1.0f - load_reactive_lanes(reactive0, now, nearest->x, nearest->y)) *
+         (1.0f - load_reactive_lanes(reactive1, before, x, y));
 }
 
 // True only if none of the samples of a row in rising columns x is reactive: eight are looked at together, in a buffer.
-static inline bool none_is_reactive(REACTIVE_TEXELS texels, TexelLayout layout, int width, int8 x, int y) {
-#if !ON_CPU
-  return load_reactive4(texels, layout, x.lo, y).x == 0.0f;
+static inline bool none_is_reactive(REACTIVE_TEXELS texels, TexelLayout layout, int width, LaneInt x, int y) {
+#if LANES == 1
+  return load_reactive_lanes(texels, layout, x, y) == 0.0f;
 #elif SOURCE_STORAGE == BUFFER
   const int first = min(x.s0, width - 8);
   if (first < 0 || x.s7 - first >= 8) return false;
@@ -82,13 +79,13 @@ static inline bool are_trusted(const TemporalParams* params, REACTIVE_TEXELS rea
 }
 
 // Reprojects the pixels.
-static inline EightReprojections reproject_pixels(const TemporalParams* params, __global const float* reprojection,
-                                                  REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
-                                                  const NearestSamples* nearest) {
+static inline Reprojections reproject_pixels(const TemporalParams* params, __global const float* reprojection,
+                                             REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
+                                             const NearestSamples* nearest) {
 #if MOTION
   return load_reprojections(params, reprojection, nearest);
 #else
-  EightReprojections still = no_motion();
+  Reprojections still = no_motion();
 #if REACTIVE
   still.trust = trust_of_reactive(params, reactive0, reactive1, nearest);
 #endif

@@ -20,26 +20,29 @@ typedef struct SampleMotion {
   float scale_x, scale_y;
 } SampleMotion;
 
-// The motions of the samples of row y nearest to eight pixels, x and y in turn; 0 where nothing moves.
-static inline float16 motions_of(const SampleMotion* motion, int8 x, int y) {
+// The motions of the samples of a row nearest to the pixels; 0 where nothing moves.
+typedef struct Motions {
+  LaneFloat x, y;
+} Motions;
+
+static inline Motions motions_of(const SampleMotion* motion, LaneInt x, int y) {
 #if MOTION
   __global const float* row = motion->reprojection + 4 * row_index(motion->layout, y);
-  return (float16)(vload2(2 * x.s0, row), vload2(2 * x.s1, row), vload2(2 * x.s2, row), vload2(2 * x.s3, row),
-                   vload2(2 * x.s4, row), vload2(2 * x.s5, row), vload2(2 * x.s6, row), vload2(2 * x.s7, row));
+  const Motions motions = {gather(row, 4 * x), gather(row + 1, 4 * x)};
 #else
-  return (float16)(0.0f);
+  const Motions motions = {(LaneFloat)(0.0f), (LaneFloat)(0.0f)};
 #endif
+  return motions;
 }
 
 // How far samples of one motion may show the same surfaces as those of the other, by their motions: 1 to 0.
-static inline float8 similarity(const SampleMotion* motion, float16 own, float16 other) {
+static inline LaneFloat similarity(const SampleMotion* motion, Motions own, Motions other) {
 #if MOTION
-  const float16 apart = other - own;
-  const float8 x = apart.even * motion->scale_x * (1.0f / SAME_SURFACE_MOTION_MAX);
-  const float8 y = apart.odd * motion->scale_y * (1.0f / SAME_SURFACE_MOTION_MAX);
+  const LaneFloat x = (other.x - own.x) * motion->scale_x * (1.0f / SAME_SURFACE_MOTION_MAX);
+  const LaneFloat y = (other.y - own.y) * motion->scale_y * (1.0f / SAME_SURFACE_MOTION_MAX);
   return max(1.0f - x * x - y * y, SIMILARITY_MIN);
 #else
-  return (float8)(1.0f);
+  return (LaneFloat)(1.0f);
 #endif
 }
 
@@ -62,24 +65,24 @@ static inline float4 seed_from_afar(COLOUR_TEXELS texels, const SourceFrame* fra
   return weights > 0.0f ? sum / weights : sum;
 }
 
-// The seeds of eight pixels.
-typedef struct EightSeeds {
-  EightTexels mean;  // alpha in the last channel
-  int8 known;        // lanes with a valid sample; of the others the mean is what stands in for the seed
-} EightSeeds;
+// The seeds of pixels.
+typedef struct Seeds {
+  LaneTexels mean;  // alpha in the last channel
+  LaneMask known;       // lanes with a valid sample; of the others the mean is what stands in for the seed
+} Seeds;
 
-static inline void add_to_seeds(EightTexels* sum, float8* weights, EightTexels samples, float8 weight) {
+static inline void add_to_seeds(LaneTexels* sum, LaneFloat* weights, LaneTexels samples, LaneFloat weight) {
   if (may_be_bright(samples)) weigh_by_luma(&samples, &weight, 0);
-  sum->left += samples.left * to_four_texels(weight.lo);
-  sum->right += samples.right * to_four_texels(weight.hi);
+  *sum = add_times(*sum, samples, weight);
   *weights += weight;
 }
 
 // Replaces the means of the pixels without a valid sample near. The slow path.
-static inline EightTexels seeds_from_afar(COLOUR_TEXELS texels, const SourceFrame* frame, EightTexels means,
-                                          int8 known, int8 x, int y) {
+static inline LaneTexels seeds_from_afar(COLOUR_TEXELS texels, const SourceFrame* frame, LaneTexels means,
+                                         LaneMask known, LaneInt x, int y) {
   for (int i = 0; i < kLanes; ++i) {
-    means = push_texel(means, known.s0 == 0 ? seed_from_afar(texels, frame, x.s0, y) : first_texel(means));
+    const bool is_known = FIRST_LANE(known);
+    means = push_texel(means, is_known ? first_texel(means) : seed_from_afar(texels, frame, FIRST_LANE(x), y));
     known = NEXT_LANES(known);
     x = NEXT_LANES(x);
   }
@@ -88,34 +91,33 @@ static inline EightTexels seeds_from_afar(COLOUR_TEXELS texels, const SourceFram
 
 // The means of the 3x3 samples around the nearest ones, each weighted by a Gaussian of its distance, its luma weight
 // and its similarity to the nearest.
-static inline EightSeeds seeds_of(COLOUR_TEXELS texels, const SourceFrame* frame, const SampleMotion* motion,
-                                  const NearestSamples* nearest) {
-  const float16 none = (float16)(0.0f);
-  const float16 own = motions_of(motion, nearest->x, nearest->y);
-  EightTexels sum = {none, none};
-  float8 weights = (float8)(0.0f);
+static inline Seeds seeds_of(COLOUR_TEXELS texels, const SourceFrame* frame, const SampleMotion* motion,
+                             const NearestSamples* nearest) {
+  const Motions own = motions_of(motion, nearest->x, nearest->y);
+  LaneTexels sum = no_texels();
+  LaneFloat weights = (LaneFloat)(0.0f);
   UNROLL_LANE(3)
   for (int row = -1; row <= 1; ++row) {
     const int y = clamp(nearest->y + row, 0, frame->height - 1);
     const float away_y = (float)row - nearest->from_y;
     UNROLL_LANE(3)
     for (int column = -1; column <= 1; ++column) {
-      const int8 x = clamp(nearest->x + column, (int8)(0), (int8)(frame->width - 1));
-      const float8 away_x = (float)column - nearest->from_x;
-      const float8 near = bell((away_x * away_x + away_y * away_y) * SEED_FALLOFF);
-      const float8 alike = similarity(motion, own, motions_of(motion, x, y));
+      const LaneInt x = clamp(nearest->x + column, (LaneInt)(0), (LaneInt)(frame->width - 1));
+      const LaneFloat away_x = (float)column - nearest->from_x;
+      const LaneFloat near = bell((away_x * away_x + away_y * away_y) * SEED_FALLOFF);
+      const LaneFloat alike = similarity(motion, own, motions_of(motion, x, y));
       add_to_seeds(&sum, &weights, load_samples(texels, frame->colour, x, y), near * alike);
     }
   }
-  const int8 known = weights > 0.0f;
-  const float8 divisor = select((float8)(1.0f), weights, known);
-  const EightTexels mean = {sum.left / to_four_texels(divisor.lo), sum.right / to_four_texels(divisor.hi)};
-  const EightSeeds seeds = {
+  const LaneMask known = weights > 0.0f;
+  const LaneFloat divisor = select((LaneFloat)(1.0f), weights, known);
+  const LaneTexels mean = over(sum, divisor);
+  const Seeds seeds = {
       all_lanes(known) ? mean : seeds_from_afar(texels, frame, mean, known, nearest->x, nearest->y), known};
   return seeds;
 }
 
-// ---- Rectification and reseeding of eight output pixels of a row.
+// ---- Rectification and reseeding of output pixels of a row.
 
 static inline bool needs_correction(const Evidence* evidence) {
   return any_lane((evidence->rejection > 0.0f) | (evidence->confidence < CONFIDENCE_MIN));
@@ -123,41 +125,38 @@ static inline bool needs_correction(const Evidence* evidence) {
 
 // Brings history into the range of the samples around it by its rejection, where it has any.
 static inline void rectify_history(COLOUR_TEXELS colour, const SourceFrame* frame, const NearestSamples* nearest,
-                                   EightTexels* history, float8* alpha, Evidence* evidence) {
-  const EightBoxes boxes = boxes_around(colour, frame, nearest->x, nearest->y);
-  const Rectified left = rectify4(history->left, evidence->rejection.lo, &boxes.left);
-  const Rectified right = rectify4(history->right, evidence->rejection.hi, &boxes.right);
-  history->left = left.history;
-  history->right = right.history;
-  evidence->confidence *= (float8)(left.part, right.part);
+                                   LaneTexels* history, LaneFloat* alpha, Evidence* evidence) {
+  const ToneBoxes boxes = boxes_around(colour, frame, nearest->x, nearest->y);
+  const Rectified rectified = rectify_texels(*history, evidence->rejection, &boxes);
+  *history = rectified.history;
+  evidence->confidence *= rectified.part;
 #if ALPHA
   *alpha = rectify_alphas(colour, frame, nearest->x, nearest->y, *alpha, evidence->rejection);
 #endif
 }
 
 // Reseeds the history of `lanes`. Returns its inertia.
-static inline float8 reseed_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
-                                    const NearestSamples* nearest, int8 lanes, EightTexels* history, float8* alpha,
-                                    float8* confidence) {
-  const EightSeeds seeds = seeds_of(colour, frame, motion, nearest);
-  const float8 none = (float8)(0.0f);
-  const float8 share = select(none, 1.0f - *confidence / CONFIDENCE_MIN, lanes);
-  history->left += (seeds.mean.left - history->left) * to_four_texels(share.lo);
-  history->right += (seeds.mean.right - history->right) * to_four_texels(share.hi);
+static inline LaneFloat reseed_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
+                                       const NearestSamples* nearest, LaneMask lanes, LaneTexels* history,
+                                       LaneFloat* alpha, LaneFloat* confidence) {
+  const Seeds seeds = seeds_of(colour, frame, motion, nearest);
+  const LaneFloat none = (LaneFloat)(0.0f);
+  const LaneFloat share = select(none, 1.0f - *confidence / CONFIDENCE_MIN, lanes);
+  *history = move_to(*history, seeds.mean, share);
 #if ALPHA
   *alpha += (confidences(seeds.mean) - *alpha) * share;
 #endif
-  *confidence = select(*confidence, select(none, (float8)(CONFIDENCE_MIN), seeds.known), lanes);
+  *confidence = select(*confidence, select(none, (LaneFloat)(CONFIDENCE_MIN), seeds.known), lanes);
   return SEED_INERTIA * share;
 }
 
 // Rectifies history where it is rejected, and reseeds that of `lanes` where its confidence is less than the least; with
 // ALPHA its alpha, too. Returns its inertia: how much it resists this frame's sample, as a weight.
-static inline float8 correct_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
-                                     const NearestSamples* nearest, int8 lanes, EightTexels* history, float8* alpha,
-                                     Evidence* evidence) {
+static inline LaneFloat correct_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
+                                        const NearestSamples* nearest, LaneMask lanes, LaneTexels* history,
+                                        LaneFloat* alpha, Evidence* evidence) {
   if (any_lane(evidence->rejection > 0.0f)) rectify_history(colour, frame, nearest, history, alpha, evidence);
-  const int8 unknown = lanes & (evidence->confidence < CONFIDENCE_MIN);
-  if (!any_lane(unknown)) return (float8)(0.0f);
+  const LaneMask unknown = lanes & (evidence->confidence < CONFIDENCE_MIN);
+  if (!any_lane(unknown)) return (LaneFloat)(0.0f);
   return reseed_history(colour, frame, motion, nearest, unknown, history, alpha, &evidence->confidence);
 }

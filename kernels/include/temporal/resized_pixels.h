@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The places of eight pixels of a row of an output among the texels of a history of another size.
+// The places of pixels of a row of an output among the texels of a history of another size.
 #pragma once
 
 #include "arithmetic.h"
@@ -7,17 +7,17 @@
 #include "temporal/temporal_params.h"
 
 typedef struct ResizedPixels {
-  Positions column, row;  // places of the pixels' centres, anywhere; all eight share their row
-  int8 x;                 // the texel nearest to each
+  Positions column, row;  // places of the pixels' centres, anywhere; all share their row
+  LaneInt x;                 // the texel nearest to each
   int y;
-  float8 phase_x, phase_y;  // phases of the layer's texels there, history's pixels
+  LaneFloat phase_x, phase_y;  // phases of the layer's texels there, history's pixels
 } ResizedPixels;
 
 // Returns the position of output row y among history's texels, the same in all lanes.
 static inline Positions row_among_texels(const ResizeParams* params, __global const int* positions, int y) {
   const int texel = positions[2 * params->columns + y];
   const float fraction = as_float(positions[2 * params->columns + params->height + y]);
-  const Positions row = {(int8)(texel), (float8)(fraction)};
+  const Positions row = {(LaneInt)(texel), (LaneFloat)(fraction)};
   return row;
 }
 
@@ -27,10 +27,10 @@ static inline ResizedPixels pixels_among_texels(const ResizeParams* params, __gl
   ResizedPixels pixels;
   pixels.column = load_positions(positions, params->columns, x);
   pixels.row = row;
-  pixels.x = clamp(nearest_samples(pixels.column), (int8)(0), (int8)(params->previous_width - 1));
-  pixels.y = clamp(nearest_samples(row).s0, 0, params->previous_height - 1);
-  pixels.phase_x = (float8)(0.0f);
-  pixels.phase_y = (float8)(0.0f);
+  pixels.x = clamp(nearest_samples(pixels.column), (LaneInt)(0), (LaneInt)(params->previous_width - 1));
+  pixels.y = clamp(FIRST_LANE(nearest_samples(row)), 0, params->previous_height - 1);
+  pixels.phase_x = (LaneFloat)(0.0f);
+  pixels.phase_y = (LaneFloat)(0.0f);
   return pixels;
 }
 
@@ -46,8 +46,8 @@ static inline float way_to_place(int i, int places, float ratio) {
 
 // Where the pictures of the pixels' places (i, j) are, no further out than the outermost texels.
 static inline SourcePlaces places_among_texels(const ResizeParams* params, const ResizedPixels* pixels, int i, int j) {
-  const float8 way_x = way_to_place(i, params->places_x, params->ratio_x) - pixels->phase_x;
-  const float8 way_y = way_to_place(j, params->places_y, params->ratio_y) - pixels->phase_y;
+  const LaneFloat way_x = way_to_place(i, params->places_x, params->ratio_x) - pixels->phase_x;
+  const LaneFloat way_y = way_to_place(j, params->places_y, params->ratio_y) - pixels->phase_y;
   SourcePlaces places = {moved_positions(pixels->column, way_x, params->previous_width - 1),
                          moved_positions(pixels->row, way_y, params->previous_height - 1)};
   places.x.texel -= 1;

@@ -7,6 +7,7 @@
 
 #include "bits.h"
 #include "temporal/constants.h"
+#include "temporal/history.h"
 #include "temporal/temporal_params.h"
 #include "texel.h"
 
@@ -36,6 +37,11 @@ static inline float16 to_the_left(float16 row) {
 
 static inline float16 to_the_right(float16 row) {
   return row.s123456789abcdeff;
+}
+
+// The confidences of the eight texels from `index` on.
+static inline float8 load_confidences8(HistoryLayer layer, int index) {
+  return (float8)(load_history4(layer, index).s37bf, load_history4(layer, index + 4).s37bf);
 }
 
 // The four texels from (x, y) on, clamped to the edge.

@@ -27,7 +27,7 @@ typedef struct FourPixels {
 
 static inline int4 largest_of(int4 largest, FourPixels pixels) {
   largest = larger_magnitude(largest, pixels.p0);
-  if (!ON_CPU) return largest;
+  if (LANES == 1) return largest;
   return larger_magnitude(larger_magnitude(larger_magnitude(largest, pixels.p1), pixels.p2), pixels.p3);
 }
 
@@ -36,7 +36,7 @@ static inline uint sanitise_four(FourPixels* pixels) {
   if (!any_reached_infinity(largest_of((int4)(0), *pixels))) return 0;
   uint bits = any_non_finite4(pixels->p0);
   pixels->p0 = sanitise4(pixels->p0);
-  if (!ON_CPU) return bits;
+  if (LANES == 1) return bits;
   bits |= (uint)any_non_finite4(pixels->p1) << 1 | (uint)any_non_finite4(pixels->p2) << 2 |
           (uint)any_non_finite4(pixels->p3) << 3;
   pixels->p1 = sanitise4(pixels->p1);
@@ -160,4 +160,20 @@ static inline void stream_output4(OUTPUT_TEXELS texels, TexelLayout layout, int 
   STREAM(value.s89ab, to + 2);
   STREAM(value.scdef, to + 3);
 #endif
+}
+
+// The first `count` pixels from (x, y) on.
+static inline void stream_output_lanes(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y, int count,
+                                       LaneTexels pixels) {
+#if LANES == 8
+  if (count >= kLanes) {
+    stream_output4(texels, layout, x, y, pixels.left);
+    stream_output4(texels, layout, x + 4, y, pixels.right);
+    return;
+  }
+#endif
+  for (int i = 0; i < count; ++i) {
+    store_output(texels, layout, x + i, y, first_texel(pixels));
+    pixels = push_texel(pixels, first_texel(pixels));
+  }
 }

@@ -85,6 +85,24 @@ static inline float4 load_depth_block(DEPTH_TEXELS texels, TexelLayout layout, i
   return load_depth4(texels, layout, min(x + (int4)(0, 1, 2, 3), (int4)(width - 1)), y);
 }
 
+// The depths of a row's texels, one a lane.
+static inline LaneFloat load_depth_lanes(DEPTH_TEXELS texels, TexelLayout layout, LaneInt x, int y) {
+#if LANES == 8
+  return (LaneFloat)(load_depth4(texels, layout, x.lo, y), load_depth4(texels, layout, x.hi, y));
+#else
+  return load_depth(texels, layout, x, y);
+#endif
+}
+
+static inline float load_reactive(REACTIVE_TEXELS texels, TexelLayout layout, int x, int y) {
+#if SOURCE_STORAGE == IMAGE
+  return read_imagef(texels, (int2)(x, y)).x;
+#else
+  const float code = convert_float(texels[texel_index(layout, x, y)]);
+  return FRACTION_OF_CODE(code);
+#endif
+}
+
 static inline float4 load_reactive4(REACTIVE_TEXELS texels, TexelLayout layout, int4 x, int y) {
 #if SOURCE_STORAGE == IMAGE
   return (float4)(read_imagef(texels, (int2)(x.s0, y)).x, read_imagef(texels, (int2)(x.s1, y)).x,
@@ -93,6 +111,15 @@ static inline float4 load_reactive4(REACTIVE_TEXELS texels, TexelLayout layout, 
   __global const uchar* row = texels + row_index(layout, y);
   const float4 codes = convert_float4((int4)(row[x.s0], row[x.s1], row[x.s2], row[x.s3]));
   return FRACTION_OF_CODE(codes);
+#endif
+}
+
+// The same, one a lane.
+static inline LaneFloat load_reactive_lanes(REACTIVE_TEXELS texels, TexelLayout layout, LaneInt x, int y) {
+#if LANES == 8
+  return (LaneFloat)(load_reactive4(texels, layout, x.lo, y), load_reactive4(texels, layout, x.hi, y));
+#else
+  return load_reactive(texels, layout, x, y);
 #endif
 }
 
