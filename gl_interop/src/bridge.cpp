@@ -108,6 +108,7 @@ bool gains_by_external(const DeviceInfo& device) {
 }
 
 Result<std::unique_ptr<Bridge>> make_external(const Device& device, const BridgeSettings& settings) {
+  const ErrorScope callers;
   try {
     const auto exporter = Exporter::create(device);
     return std::unique_ptr<Bridge>(std::make_unique<HostCopy>(

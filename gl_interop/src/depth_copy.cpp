@@ -40,20 +40,22 @@ GLuint SamplerTraits::create() {
   return name;
 }
 
+Program compute_program(const std::string& text) {
+  const char* const source = text.c_str();
+  Program program = Program::adopt(glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &source));
+  GLint linked = GL_FALSE;
+  if (program) glGetProgramiv(program.get(), GL_LINK_STATUS, &linked);
+  if (linked == GL_TRUE) return program;
+  std::string log(1024, '\0');
+  GLsizei length = 0;
+  if (program) glGetProgramInfoLog(program.get(), static_cast<GLsizei>(log.size()), &length, log.data());
+  log.resize(static_cast<std::size_t>(length));
+  throw InteropError(fmt::format("the compute shader that copies texels was refused: {}", log));
+}
+
 DepthCopy DepthCopy::create() {
   DepthCopy made;
-  const char* source = kSource;
-  made.program_ = Program::adopt(glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &source));
-  GLint linked = GL_FALSE;
-  if (made.program_) glGetProgramiv(made.program_.get(), GL_LINK_STATUS, &linked);
-  if (linked != GL_TRUE) {
-    std::string log(1024, '\0');
-    GLsizei length = 0;
-    if (made.program_)
-      glGetProgramInfoLog(made.program_.get(), static_cast<GLsizei>(log.size()), &length, log.data());
-    log.resize(static_cast<std::size_t>(length));
-    throw InteropError(fmt::format("the compute shader that copies depth was refused: {}", log));
-  }
+  made.program_ = compute_program(kSource);
   made.sampler_ = Handle<SamplerTraits>::create();
   return made;
 }

@@ -4,6 +4,8 @@
 
 #include <epoxy/gl.h>
 
+#include <string>
+
 #include "quincunx/advanced/extent.h"
 #include "quincunx_gl/handle.h"
 #include "state_scope.h"
@@ -14,6 +16,9 @@ struct SamplerTraits {
   static GLuint create();  // takes texels as they are
   static void destroy(GLuint name) { glDeleteSamplers(1, &name); }
 };
+
+// Returns the program of one compute shader. Throws InteropError where the driver refuses it.
+Program compute_program(const std::string& text);
 
 // Copies depth textures by a compute shader.
 class DepthCopy {

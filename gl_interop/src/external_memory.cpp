@@ -149,8 +149,10 @@ ExternalBuffer Exporter::allocate(const Device& device, std::size_t bytes) const
       vulkan_->allocate(whole, mapped_ ? VulkanDevice::Place::kMapped : VulkanDevice::Place::kDevice);
 
   made.memory_object = Handle<MemoryObjectTraits>::create();
-  const GLint dedicated = made.memory->dedicated() ? GL_TRUE : GL_FALSE;
-  glMemoryObjectParameterivEXT(made.memory_object.get(), GL_DEDICATED_MEMORY_OBJECT_EXT, &dedicated);
+  if (made.memory->dedicated()) {
+    const GLint dedicated = GL_TRUE;
+    glMemoryObjectParameterivEXT(made.memory_object.get(), GL_DEDICATED_MEMORY_OBJECT_EXT, &dedicated);
+  }
   Fd for_gl = made.memory->fd();
   glImportMemoryFdEXT(made.memory_object.get(), made.memory->size(), GL_HANDLE_TYPE_OPAQUE_FD_EXT,
                       for_gl.get());
@@ -247,7 +249,6 @@ void Exporter::probe(const Device& device) const {
 std::shared_ptr<const Exporter> Exporter::create(const Device& device, bool semaphores) {
   if (!epoxy_has_gl_extension("GL_EXT_memory_object_fd"))
     throw InteropError("OpenGL does not offer GL_EXT_memory_object_fd");
-  const ErrorScope callers;
   const DeviceInfo& info = device.info();
   std::shared_ptr<Exporter> made(new Exporter);
   made->uuid_ = gl_device_uuid();

@@ -67,7 +67,8 @@ class DeviceOrder {
 class Exporter {
  public:
   // Opens Vulkan's device and has a pattern carried both ways, which must arrive byte for byte. Throws InteropError:
-  // one clause that says what is in the way. `semaphores`: false leaves them out, and the host waits.
+  // one clause that says what is in the way. `semaphores`: false leaves them out, and the host waits. Within an
+  // ErrorScope of the caller's, as all that follows.
   static std::shared_ptr<const Exporter> create(const Device& device, bool semaphores = true);
 
   ExternalBuffer allocate(const Device& device, std::size_t bytes) const;

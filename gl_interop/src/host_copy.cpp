@@ -141,9 +141,10 @@ HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::st
   texture_storage(presented_.get(), 1, gl_format(settings.picture).internal, settings.output_extent);
   if (settings.depth && !capabilities().reads_depth) depth_reader_ = DepthReader(settings.target_extent);
 
+  if (!settings.imports)
+    targets_ = &pool_.at(settings.targets == Targets::kPlaced ? Extent{1, 1} : settings.target_extent);
   prepare_shaders();
   if (settings.imports) return;
-  targets_ = &pool_.at(settings.targets == Targets::kPlaced ? Extent{1, 1} : settings.target_extent);
   // One hand-over in advance finds what the driver refuses, and leaves nothing to be made in the first frame.
   const ErrorScope callers;
   targets_->clear({1, 1});
@@ -155,19 +156,20 @@ HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::st
   }
 }
 
-// Only where all of a slot is in a shader's reach.
+// For memory of a device, within the reach of a shader, and textures that stay.
 void HostCopy::prepare_shaders() {
+  if (output_.bytes() != nullptr || capabilities().api != Api::kGl45) return;
   GLint64 reach = 0;
-  if (capabilities().api != Api::kGl45) return;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &reach);
   const std::size_t largest = std::max(slots_.front().pixels.size(), output_.size());
-  shades_ = output_.transfer() == Transfer::kShared && !settings_.imports &&
-            settings_.targets == Targets::kViewport && static_cast<GLint64>(largest) <= reach;
-  if (!shades_) return;
+  if (static_cast<GLint64>(largest) > reach) return;
+  const ErrorScope callers;
+  picture_copy_.emplace(presented_.get(), settings_.picture, false, TexelCopy::Direction::kToTexture);
+  if (settings_.imports || settings_.targets == Targets::kPlaced) return;
   for (const Plane& plane : planes_) {
-    if (const auto kind = TexelCopy::of(plane)) texels_.prepare(*kind, false);
+    plane_copies_.emplace_back(texture_of(textures_of(*targets_), plane.kind), plane.format,
+                               plane.kind == PlaneKind::kDepth, TexelCopy::Direction::kToBuffer);
   }
-  if (const auto kind = TexelCopy::of_picture(settings_.picture)) texels_.prepare(*kind, true);
 }
 
 HostCopy::~HostCopy() {
@@ -180,17 +182,18 @@ void HostCopy::read_back(Slot& slot, const FrameTextures& from, Extent render) {
   slot.pixels.begin_gl();
   glBindFramebuffer(GL_READ_FRAMEBUFFER, reader_.get());
   glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.pixels.gl_buffer());
-  for (const Plane& plane : planes_) {
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    const Plane& plane = planes_[i];
     const ImageView& view = view_of(regions, plane.kind);
+    if (!plane_copies_.empty()) {
+      plane_copies_[i].run(render, slot.pixels.gl_buffer(), slot.pixels.offset() + view.offset, view.pitch,
+                           before());
+      continue;
+    }
     const GlFormat names = gl_format(plane.format);
     const GLuint texture = texture_of(from, plane.kind);
     const bool is_depth = plane.kind == PlaneKind::kDepth && has_depth_format(texture);
     void* const start = slot.pixels.gl_pointer(view.offset);
-    if (const auto kind = TexelCopy::of(plane); shades_ && kind) {
-      texels_.to_buffer(*kind, texture, render, slot.pixels.gl_buffer(), slot.pixels.offset() + view.offset,
-                        view.pitch, before());
-      continue;
-    }
     glPixelStorei(GL_PACK_ROW_LENGTH, static_cast<GLint>(view.pitch / bytes_per_pixel(plane.format)));
     if (is_depth && !capabilities().reads_depth) {
       depth_reader_.read(texture, render, start, before());
@@ -326,9 +329,9 @@ Status HostCopy::present(GLuint into) {
   const UnpackScope restore(before());
   const GlFormat names = gl_format(settings_.picture);
   output_.begin_gl();
-  if (const auto kind = TexelCopy::of_picture(settings_.picture); shades_ && kind && into == 0) {
-    texels_.to_texture(*kind, presented_.get(), settings_.output_extent, output_.gl_buffer(),
-                       output_.offset(), output_view_.pitch, before());
+  if (picture_copy_ && into == 0) {
+    picture_copy_->run(settings_.output_extent, output_.gl_buffer(), output_.offset(), output_view_.pitch,
+                       before());
   } else {
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, output_.gl_buffer());
     texture_write(into != 0 ? into : presented_.get(), 0, settings_.output_extent, names.format, names.type,

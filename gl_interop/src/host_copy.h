@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -130,8 +131,9 @@ class HostCopy final : public Bridge {
   const RenderTargets* targets_ = nullptr;  // that are drawn or were drawn last; none with imports
   Framebuffer reader_;                      // through which textures are read
   DepthReader depth_reader_;
-  TexelCopy texels_;     // for kShared
-  bool shades_ = false;  // it is used
+  // Copies of the planes, and of the picture, by shaders; none: by transfers of pixels.
+  std::vector<TexelCopy> plane_copies_;
+  std::optional<TexelCopy> picture_copy_;
   SlotRing ring_;
   std::vector<Slot> slots_;
   PixelBuffer output_;

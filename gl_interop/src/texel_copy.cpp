@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <string>
 
 #include "cl_handle.h"
-#include "quincunx_gl/capabilities.h"
 
 namespace quincunx::gl {
 namespace {
@@ -14,41 +14,48 @@ namespace {
 constexpr int kGroupWidth = 32;
 constexpr int kGroupHeight = 4;
 
-// Texels of a size are read and written as whole numbers, so that every bit stays.
-struct KindFacts {
-  TexelCopy::Kind kind;
-  GLenum image;        // format of the image unit
-  const char* layout;  // the same in a shader
-  const char* word;    // what the buffer holds
-  std::size_t bytes;   // of that
-  int texels;          // in that
+// Texels of a size as whole numbers, so that every bit stays: the image, what the buffer holds, and how one comes to
+// the other.
+struct WordFacts {
+  std::size_t texel_bytes;
+  GLenum image;
+  const char* layout;
+  const char* word;
+  std::size_t word_bytes;
+  int word_texels;
   const char* load;
   const char* store;
 };
 
-const KindFacts& facts_of(TexelCopy::Kind kind) {
-  using enum TexelCopy::Kind;
-  static constexpr KindFacts kFacts[] = {
-      {k1, GL_R8UI, "r8ui", "uint", 4, 4,
-       "uint word = 0u; for (int i = 3; i >= 0; --i) word = word << 8 | imageLoad(texels, ivec2(4 * at.x + "
-       "i, at.y)).r;",
-       ""},
-      {k4, GL_R32UI, "r32ui", "uint", 4, 1, "uint word = imageLoad(texels, at).r;", "uvec4(word)"},
-      {k8, GL_RG32UI, "rg32ui", "uvec2", 8, 1, "uvec2 word = imageLoad(texels, at).rg;",
-       "uvec4(word, 0u, 0u)"},
-      {k16, GL_RGBA32UI, "rgba32ui", "uvec4", 16, 1, "uvec4 word = imageLoad(texels, at);", "word"},
-      {kDepth, GL_NONE, "", "uint", 4, 1, "uint word = floatBitsToUint(texelFetch(texels, at, 0).r);", ""}};
-  return kFacts[static_cast<std::size_t>(kind)];
+constexpr std::array<WordFacts, 4> kWords = {{
+    {1, GL_R8UI, "r8ui", "uint", 4, 4,
+     "uint word = 0u; for (int i = 3; i >= 0; --i) word = word << 8 | imageLoad(texels, ivec2(4 * at.x + i, "
+     "at.y)).r;",
+     "for (int i = 0; i < 4; ++i) imageStore(texels, ivec2(4 * at.x + i, at.y), uvec4(word >> 8 * i & "
+     "255u));"},
+    {4, GL_R32UI, "r32ui", "uint", 4, 1, "uint word = imageLoad(texels, at).r;",
+     "imageStore(texels, at, uvec4(word));"},
+    {8, GL_RG32UI, "rg32ui", "uvec2", 8, 1, "uvec2 word = imageLoad(texels, at).rg;",
+     "imageStore(texels, at, uvec4(word, 0u, 0u));"},
+    {16, GL_RGBA32UI, "rgba32ui", "uvec4", 16, 1, "uvec4 word = imageLoad(texels, at);",
+     "imageStore(texels, at, word);"},
+}};
+constexpr WordFacts kDepth = {
+    4, GL_NONE, "", "uint", 4, 1, "uint word = floatBitsToUint(texelFetch(texels, at, 0).r);", ""};
+
+const WordFacts& facts_of(PixelFormat format, bool is_depth) {
+  if (is_depth) return kDepth;
+  return *std::find_if(kWords.begin(), kWords.end() - 1,
+                       [&](const WordFacts& facts) { return facts.texel_bytes == bytes_per_pixel(format); });
 }
 
-std::string source_of(const KindFacts& facts, bool to_texture) {
+std::string source_of(const WordFacts& facts, bool to_texture) {
   const std::string texels = facts.image == GL_NONE
                                  ? "layout(binding = 0) uniform sampler2D texels;"
                                  : fmt::format("layout(binding = 0, {}) {} uniform uimage2D texels;",
                                                facts.layout, to_texture ? "writeonly" : "readonly");
-  const std::string copy =
-      to_texture ? fmt::format("{} word = words[index]; imageStore(texels, at, {});", facts.word, facts.store)
-                 : fmt::format("{} words[index] = word;", facts.load);
+  const std::string copy = to_texture ? fmt::format("{} word = words[index]; {}", facts.word, facts.store)
+                                      : fmt::format("{} words[index] = word;", facts.load);
   return fmt::format(R"(#version 450 core
 layout(local_size_x = {}, local_size_y = {}) in;
 {}
@@ -71,72 +78,44 @@ GLuint groups(int count, int size) {
 
 }  // namespace
 
-std::optional<TexelCopy::Kind> TexelCopy::of(const Plane& plane) {
-  if (capabilities().api != Api::kGl45) return std::nullopt;
-  if (plane.kind == PlaneKind::kDepth) return Kind::kDepth;
-  if (plane.format == PixelFormat::kR8) return Kind::k1;
-  return plane.format == PixelFormat::kRGBA8 ? std::nullopt : of_picture(plane.format);
-}
-
-std::optional<TexelCopy::Kind> TexelCopy::of_picture(PixelFormat picture) {
-  if (capabilities().api != Api::kGl45) return std::nullopt;
-  switch (bytes_per_pixel(picture)) {
-    case 4:
-      return Kind::k4;
-    case 8:
-      return Kind::k8;
-    case 16:
-      return Kind::k16;
-    default:
-      return std::nullopt;
+TexelCopy::TexelCopy(GLuint texture, PixelFormat format, bool is_depth, Direction direction)
+    : texture_(texture) {
+  const WordFacts& facts = facts_of(format, is_depth);
+  const bool to_texture = direction == Direction::kToTexture;
+  word_bytes_ = facts.word_bytes;
+  word_texels_ = facts.word_texels;
+  access_ = to_texture ? GL_WRITE_ONLY : GL_READ_ONLY;
+  image_format_ = facts.image;
+  program_ = compute_program(source_of(facts, to_texture));
+  if (is_depth) {
+    sampler_ = Handle<SamplerTraits>::create();
+    return;
   }
+  // A view needs a name without a texture.
+  GLuint name = 0;
+  glGenTextures(1, &name);
+  view_ = Texture::adopt(name);
+  glTextureView(name, GL_TEXTURE_2D, texture, image_format_, 0, 1, 0, 1);
+  check_gl("glTextureView");
 }
 
-void TexelCopy::prepare(Kind kind, bool to_texture) {
-  const std::string text = source_of(facts_of(kind), to_texture);
-  const char* const source = text.c_str();
-  Program program = Program::adopt(glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &source));
-  GLint linked = GL_FALSE;
-  if (program) glGetProgramiv(program.get(), GL_LINK_STATUS, &linked);
-  if (linked != GL_TRUE) {
-    std::string log(1024, '\0');
-    GLsizei length = 0;
-    if (program) glGetProgramInfoLog(program.get(), static_cast<GLsizei>(log.size()), &length, log.data());
-    log.resize(static_cast<std::size_t>(length));
-    throw InteropError(fmt::format("the compute shader that copies texels was refused: {}", log));
-  }
-  programs_[{kind, to_texture}] = std::move(program);
-  if (!sampler_) sampler_ = Handle<SamplerTraits>::create();
-}
-
-void TexelCopy::run(Kind kind, bool to_texture, GLuint texture, Extent extent, GLuint buffer,
-                    std::size_t offset, std::size_t pitch, Before before) const {
-  const KindFacts& facts = facts_of(kind);
+void TexelCopy::run(Extent extent, GLuint buffer, std::size_t offset, std::size_t pitch,
+                    Before before) const {
   const ComputeScope restore(before);
   const StorageScope storage(before);
-  const int width = (extent.width + facts.texels - 1) / facts.texels;
-  glUseProgram(programs_.at({kind, to_texture}).get());
+  const int width = (extent.width + word_texels_ - 1) / word_texels_;
+  glUseProgram(program_.get());
   glUniform2i(0, width, extent.height);
-  glUniform2ui(1, static_cast<GLuint>(offset / facts.bytes), static_cast<GLuint>(pitch / facts.bytes));
+  glUniform2ui(1, static_cast<GLuint>(offset / word_bytes_), static_cast<GLuint>(pitch / word_bytes_));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer);
-  if (facts.image == GL_NONE) {
-    glBindTexture(GL_TEXTURE_2D, texture);
-    glBindSampler(0, sampler_.get());
+  if (view_) {
+    glBindImageTexture(0, view_.get(), 0, GL_FALSE, 0, access_, image_format_);
   } else {
-    glBindImageTexture(0, texture, 0, GL_FALSE, 0, to_texture ? GL_WRITE_ONLY : GL_READ_ONLY, facts.image);
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    glBindSampler(0, sampler_.get());
   }
   glDispatchCompute(groups(width, kGroupWidth), groups(extent.height, kGroupHeight), 1);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
-}
-
-void TexelCopy::to_buffer(Kind kind, GLuint texture, Extent extent, GLuint buffer, std::size_t offset,
-                          std::size_t pitch, Before before) const {
-  run(kind, false, texture, extent, buffer, offset, pitch, before);
-}
-
-void TexelCopy::to_texture(Kind kind, GLuint texture, Extent extent, GLuint buffer, std::size_t offset,
-                           std::size_t pitch, Before before) const {
-  run(kind, true, texture, extent, buffer, offset, pitch, before);
 }
 
 }  // namespace quincunx::gl

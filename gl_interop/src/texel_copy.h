@@ -5,8 +5,7 @@
 
 #include <epoxy/gl.h>
 
-#include <map>
-#include <optional>
+#include <cstddef>
 
 #include "depth_copy.h"
 #include "frame_layout.h"
@@ -15,31 +14,27 @@
 
 namespace quincunx::gl {
 
+// Of one immutable texture, which outlives this object. Desktop OpenGL alone.
 class TexelCopy {
  public:
-  // What a shader copies: texels of so many bytes as they are, or depth of any format as floats.
-  enum class Kind { k1, k4, k8, k16, kDepth };
+  enum class Direction { kToBuffer, kToTexture };
 
-  // Returns the kind of a plane of targets, or of a picture; nothing where pixel transfers do it: in OpenGL ES, and for
-  // encoded targets, which no image unit takes.
-  static std::optional<Kind> of(const Plane& plane);
-  static std::optional<Kind> of_picture(PixelFormat picture);
+  // `format`: the texture's, or R32F for a depth format, which is only read. Throws InteropError where the driver
+  // refuses.
+  TexelCopy(GLuint texture, PixelFormat format, bool is_depth, Direction direction);
 
-  // Compiles what copies this kind. Throws InteropError where the driver refuses.
-  void prepare(Kind kind, bool to_texture);
-
-  // Copies the top left `extent`. The texture is immutable; `offset` and `pitch` are bytes. Of one-byte texels a row
-  // ends with up to three more, and `pitch` is a multiple of 4.
-  void to_buffer(Kind kind, GLuint texture, Extent extent, GLuint buffer, std::size_t offset,
-                 std::size_t pitch, Before before) const;
-  void to_texture(Kind kind, GLuint texture, Extent extent, GLuint buffer, std::size_t offset,
-                  std::size_t pitch, Before before) const;
+  // Copies the top left `extent`; `offset` and `pitch` are bytes of the buffer, multiples of a texel's. Of R8 a row
+  // ends with up to three texels more, and they are multiples of 4. Puts back the state.
+  void run(Extent extent, GLuint buffer, std::size_t offset, std::size_t pitch, Before before) const;
 
  private:
-  void run(Kind kind, bool to_texture, GLuint texture, Extent extent, GLuint buffer, std::size_t offset,
-           std::size_t pitch, Before before) const;
-
-  std::map<std::pair<Kind, bool>, Program> programs_;
+  std::size_t word_bytes_;
+  int word_texels_;
+  GLenum access_;
+  GLenum image_format_;  // GL_NONE: the texture is sampled
+  Texture view_;         // the texels as whole numbers
+  GLuint texture_;       // or the texture itself
+  Program program_;
   Handle<SamplerTraits> sampler_;
 };
 

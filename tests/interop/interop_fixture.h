@@ -123,6 +123,15 @@ inline BridgeSettings all_planes(Extent target, Extent output, PixelFormat colou
           .colour = colour};
 }
 
+// Whether Vulkan has the device that OpenGL draws on.
+inline bool has_vulkan() {
+  try {
+    return VulkanDevice::open(gl_device_uuid()) != nullptr;
+  } catch (const InteropError&) {
+    return false;
+  }
+}
+
 class InteropTest : public ::testing::Test {
  protected:
   virtual Api api() const { return Api::kGl45; }

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "cl_imports.h"
 #include "cl_interposer.h"
 #include "interop_fixture.h"
 #include "quincunx_gl/frame_timer.h"
@@ -25,11 +26,14 @@ struct Way {
   bool shared = false;
   bool imports = false;
   bool placed = false;
+  bool external = false;  // by fds where the device is a stand-in
 };
 
 constexpr std::array kWays = {Way{"Copy"},
                               Way{"CopyImports", Api::kGl45, false, true},
                               Way{"CopyPlaced", Api::kGl45, false, false, true},
+                              Way{"External", Api::kGl45, false, false, false, true},
+                              Way{"ExternalImports", Api::kGl45, false, true, false, true},
                               Way{"Shared", Api::kGl45, true},
                               Way{"SharedImports", Api::kGl45, true, true},
                               Way{"Es", Api::kEs3},
@@ -139,8 +143,12 @@ constexpr std::array kQueries = {GL_ARRAY_BUFFER_BINDING,
                                  GL_FRONT_FACE,
                                  GL_READ_BUFFER,
                                  GL_DRAW_BUFFER0};
-constexpr std::array kDesktopQueries = {GL_CLAMP_READ_COLOR, GL_POLYGON_MODE, GL_CLIP_ORIGIN,
-                                        GL_CLIP_DEPTH_MODE, GL_PROVOKING_VERTEX};
+constexpr std::array kDesktopQueries = {GL_SHADER_STORAGE_BUFFER_BINDING,
+                                        GL_CLAMP_READ_COLOR,
+                                        GL_POLYGON_MODE,
+                                        GL_CLIP_ORIGIN,
+                                        GL_CLIP_DEPTH_MODE,
+                                        GL_PROVOKING_VERTEX};
 constexpr std::array kImageQueries = {GL_IMAGE_BINDING_NAME,    GL_IMAGE_BINDING_LEVEL,
                                       GL_IMAGE_BINDING_LAYERED, GL_IMAGE_BINDING_LAYER,
                                       GL_IMAGE_BINDING_ACCESS,  GL_IMAGE_BINDING_FORMAT};
@@ -166,6 +174,12 @@ StateTest::State StateTest::state() const {
     state[fmt::format("colour mask {}", buffer)] = {mask[0], mask[1], mask[2], mask[3],
                                                     glIsEnabledi(GL_BLEND, buffer)};
   }
+  GLint storage = 0;
+  glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, 0, &storage);
+  std::array<GLint64, 2> part = {};
+  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, 0, &part[0]);
+  glGetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, 0, &part[1]);
+  state["storage buffer 0"] = {storage, part[0], part[1]};
   for (const auto name : kImageQueries) {
     GLint value = 0;
     glGetIntegeri_v(static_cast<GLenum>(name), 0, &value);
@@ -232,6 +246,11 @@ void StateTest::make_unusual() {
     glBindBuffer(static_cast<GLenum>(target), buffers_.back().get());
     glBufferData(static_cast<GLenum>(target), 64, nullptr, GL_STATIC_DRAW);
   }
+  buffers_.push_back(Buffer::create());
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers_.back().get());
+  glBufferData(GL_SHADER_STORAGE_BUFFER, 1024, nullptr, GL_STATIC_DRAW);
+  glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, buffers_.back().get(), 256, 64);
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers_.front().get());
   vertices_ = VertexArray::create();
   glBindVertexArray(vertices_.get());
   const char* source = "#version 310 es\nlayout(local_size_x = 1) in;\nvoid main() {}";
@@ -281,8 +300,14 @@ TEST_P(StateTest, EveryCallPutsItBackAndFramesArrive) {
     driver = std::make_unique<PretendSharing>(false);
     device_ = std::make_unique<Device>(open_device(*context_, "", Interop::kGl).value());
   }
+  std::unique_ptr<PretendImports> imports;
+  if (way.external) {
+    if (!has_vulkan()) QUINCUNX_SKIP("Vulkan has no device that is OpenGL's");
+    if (device_->info().kind == DeviceKind::kCpu) imports = std::make_unique<PretendImports>();
+    device_ = std::make_unique<Device>(open_device(*context_, "", Interop::kExternal).value());
+  }
   BridgeSettings settings = all_planes(kTarget, kOutput);
-  settings.interop = way.shared ? Interop::kGl : Interop::kCopy;
+  settings.interop = way.shared ? Interop::kGl : way.external ? Interop::kExternal : Interop::kCopy;
   settings.imports = way.imports;
   settings.targets = way.placed ? Targets::kPlaced : Targets::kViewport;
   settings.checkerboard = way.placed;
