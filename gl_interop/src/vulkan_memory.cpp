@@ -12,7 +12,6 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
-#include <vector>
 
 #include "cl_handle.h"
 
@@ -187,6 +186,8 @@ std::string VulkanDevice::make_device() {
 }
 
 VulkanDevice::~VulkanDevice() {
+  for (const vk::Semaphore semaphore : semaphores_)
+    functions_.DestroySemaphore(device_, semaphore, nullptr);
   if (device_ != nullptr && functions_.DestroyDevice != nullptr) functions_.DestroyDevice(device_, nullptr);
   if (instance_ != nullptr && instance_functions_.DestroyInstance != nullptr)
     instance_functions_.DestroyInstance(instance_, nullptr);
@@ -254,6 +255,7 @@ std::pair<Fd, Fd> VulkanDevice::semaphore() const {
   const vk::SemaphoreCreateInfo info = {.head = {9, &exported}};
   vk::Semaphore made = 0;
   check_vk(functions_.CreateSemaphore(device_, &info, nullptr, &made), "vkCreateSemaphore");
+  semaphores_.push_back(made);
   const auto export_one = [&] {
     const vk::SemaphoreGetFdInfo of = {.semaphore = made};
     int fd = -1;
@@ -262,7 +264,6 @@ std::pair<Fd, Fd> VulkanDevice::semaphore() const {
   };
   auto [first_code, first] = export_one();
   auto [second_code, second] = export_one();
-  functions_.DestroySemaphore(device_, made, nullptr);  // those that were exported live on
   check_vk(first_code != 0 ? first_code : second_code, "vkGetSemaphoreFdKHR");
   return {std::move(first), std::move(second)};
 }

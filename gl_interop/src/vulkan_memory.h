@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "quincunx/advanced/external.h"
 #include "vulkan.h"
@@ -83,6 +84,7 @@ class VulkanDevice : public std::enable_shared_from_this<VulkanDevice> {
   vk::Device device_ = nullptr;
   vk::InstanceFunctions instance_functions_ = {};
   vk::DeviceFunctions functions_ = {};
+  mutable std::vector<vk::Semaphore> semaphores_;  // those that were exported, until the device goes
 };
 
 }  // namespace quincunx::gl
