@@ -191,7 +191,7 @@ std::optional<DeviceOrder> Exporter::order(const Device& device) const {
 // On a queue of its own: one that waits for ever would hold all frames.
 void Exporter::probe(const Device& device) const {
   constexpr std::size_t kBytes = 16384;
-  constexpr std::chrono::seconds kLimit(5);
+  constexpr std::chrono::seconds kLimit(2);
   cl_int code = CL_SUCCESS;
   const cl_command_queue queue = clCreateCommandQueue(device.context(), device.id(), 0, &code);
   check_cl(code, "clCreateCommandQueue");

@@ -15,6 +15,7 @@
 
 #include "cl_faults.h"
 #include "external_memory.h"
+#include "gl_semaphores.h"
 
 namespace quincunx::gl::testing {
 namespace {
@@ -168,6 +169,7 @@ cl_int CL_API_CALL wait_semaphores(cl_command_queue queue, cl_uint, void* const*
   cl_int code = CL_SUCCESS;
   const cl_event gate = clCreateUserEvent(semaphore->context, &code);
   if (code != CL_SUCCESS) return code;
+  code = clEnqueueBarrierWithWaitList(queue, 1, &gate, event);
   std::thread([gate, fd = dup(semaphore->fd)] {
     std::uint64_t value = 0;
     while (read(fd, &value, sizeof(value)) != sizeof(value)) {
@@ -178,13 +180,12 @@ cl_int CL_API_CALL wait_semaphores(cl_command_queue queue, cl_uint, void* const*
     clSetUserEventStatus(gate, CL_COMPLETE);
     clReleaseEvent(gate);
   }).detach();
-  return clEnqueueBarrierWithWaitList(queue, 1, &gate, event);
+  return code;
 }
 
 void CL_CALLBACK raise(cl_event, cl_int, void* fd) {
-  const std::uint64_t one = 1;
   const auto own = static_cast<int>(reinterpret_cast<std::intptr_t>(fd));
-  [[maybe_unused]] const ssize_t written = write(own, &one, sizeof(one));
+  signal_event(own);
   close(own);
 }
 

@@ -13,6 +13,7 @@
 
 #include "cl_imports.h"
 #include "cl_interposer.h"
+#include "gl_semaphores.h"
 #include "interop_fixture.h"
 #include "quincunx/advanced/log.h"
 #include "quincunx/resolve_service.h"
@@ -267,6 +268,50 @@ TEST_F(ExternalFds, MemoryChangesSidesOnce) {
     EXPECT_EQ(clReleaseEvent(done), CL_SUCCESS);
     EXPECT_EQ(driver.acquired(), 0);
   }
+}
+
+// Semaphores order OpenGL and OpenCL, and nothing waits on the host.
+TEST_F(ExternalFds, FramesOrderedByTheDeviceHaveTheBitsOfCopies) {
+  if (!PretendSemaphores::works()) QUINCUNX_SKIP("this build has no stand-in for Vulkan's loader");
+  const std::vector<Bytes> copied = pictures(settings(Interop::kCopy), kFrames);
+  const PretendSeparateMemory separate;
+  const PretendImports driver;
+  const PretendSemaphores semaphores;
+  reopen();
+  EXPECT_TRUE(contains(bridge(settings(Interop::kExternal))->reason(), "ordered by semaphores"));
+  const int before = open_fds();
+  const int uses = semaphores.uses();
+  EXPECT_TRUE(pictures(settings(Interop::kExternal), kFrames) == copied);
+  EXPECT_GE(semaphores.uses() - uses, 4 * (kFrames - 3)) << "each frame's planes and picture, both ways";
+  EXPECT_EQ(semaphores.faults(), 0);
+  EXPECT_EQ(open_fds(), before);
+  // A frame that was handed over, and that nobody took.
+  const auto bridge = this->bridge(settings(Interop::kExternal));
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(bridge->begin_draw(0, kTarget).ok());
+    ASSERT_TRUE(bridge->submit(0).ok());
+  }
+  ASSERT_TRUE(bridge->acquire(0).ok());
+  EXPECT_EQ(semaphores.faults(), 0);
+}
+
+TEST_F(ExternalFds, SemaphoresThatNeverArriveAreLeftOut) {
+  if (!PretendSemaphores::works()) QUINCUNX_SKIP("this build has no stand-in for Vulkan's loader");
+  const std::vector<Bytes> copied = pictures(settings(Interop::kCopy), 4);
+  const PretendSeparateMemory separate;
+  const PretendImports driver;
+  const PretendSemaphores semaphores(PretendSemaphores::Flaw::kNeverSignalled);
+  reopen();
+  std::vector<std::string> lines;
+  set_log([&](LogLevel level, const std::string& line) {
+    if (level == LogLevel::kWarning) lines.push_back(line);
+  });
+  EXPECT_TRUE(pictures(settings(Interop::kExternal), 4) == copied);
+  set_log({});
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_TRUE(
+      contains(lines[0], "semaphores are left out: a semaphore that OpenGL signalled did not reach OpenCL"))
+      << lines[0];
 }
 
 // Semaphores in and out of a dispatch.
