@@ -212,8 +212,8 @@ __kernel void present(const PresentParams params, RESOLVED_TEXELS source, __glob
   if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = item.first;
 #endif
 
-  // The rest of the row or, which is rare, all of it once more: pixel by pixel, four of them in each register. Where
-  // the device is no CPU all of it, one by one.
+  // The rest of the row or, which is rare, all of it once more: pixel by pixel, four of them in each register. With
+  // LANES=1 all of it, one by one.
   uint met_count = 0;
   for (; x < item.end; x += LANES == 8 ? kBlock : item.step) {
     uint met = 0;

@@ -11,8 +11,8 @@
 // Options: TAPS   4 (default) taps on both axes | 0 as many as params says
 //          CLAMP  0 (default) | 1: to the range of the samples next to the centre, so that negative lobes do not ring
 //          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
-// On a CPU rows first, for the columns that a run of output pixels reads; then columns: each sample is weighed once a
-// row. Elsewhere each pixel by itself.
+// With LANES=8 rows first, for the columns that a run of output pixels reads; then columns: each sample is weighed once
+// a row. With LANES=1 each pixel by itself: there are no registers for a run.
 // The table names the source of each filter.   Reference: tests/reference/scale_filter.cpp
 #include "arithmetic.h"
 #include "bits.h"
@@ -134,7 +134,7 @@ static inline float4 filter_columns(const FilterParams* params, const Columns* c
 #endif
 
 // One pixel of any viewport. `careful`, a constant, chooses the way: the slow one is for any values. NaN counts as 0 in
-// it, +-Inf as +-65504, and either sets *met if it has a weight. The fast one, which CPUs do without, sets it by a mean
+// it, +-Inf as +-65504, and either sets *met if it has a weight. The fast one, with LANES=1 alone, sets it by a mean
 // that is not finite. Both sum in the order of the functions above: a pixel comes out the same to the last bit
 // whichever way it went.
 __attribute__((always_inline)) static inline float4 filter_pixel(
@@ -201,7 +201,7 @@ __kernel void scale_filter(const FilterParams filter, __global const FilterSpan*
   if (!any_reached_infinity(largest)) return;
 #endif
 
-  // On a CPU once more, on the slow path, which is rare. Elsewhere all of it: a run has no registers there.
+  // All of it or, with LANES=8, all of it once more on the slow path, which is rare.
   uint met_count = 0;
   for (int x = item.first; x < item.end; x += item.step) {
     bool met;

@@ -89,7 +89,7 @@ __kernel void sharpen(const SharpenParams params, RESOLVED_TEXELS source, OUTPUT
   if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = item.first;
 #endif
 
-  // The rest of the row or, which is rare, all of it once more. Where the device is no CPU all of it.
+  // The rest of the row or, which is rare, all of it once more. With LANES=1 all of it.
   for (; x < item.end; x += item.step)
     sharpen_careful(source, output, &params, x, y, x + pixels_from(item, x));
 }

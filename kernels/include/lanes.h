@@ -66,13 +66,13 @@ typedef bool LaneMask;
 #define FIRST_LANE(lanes) LANE(lanes, s0)
 
 // The pixels of a row that a work-item makes: those from `first` on, from `first` + `step` on, and so on, before `end`.
-// On a CPU it makes a block of them at once, and then the next one. Elsewhere the items of a group take turns, pixel by
-// pixel, so that those side by side load and store neighbours.
+// With eight lanes it makes a block of them at once, and then the next one. With one the items of a group take turns,
+// pixel by pixel, so that those side by side load and store neighbours.
 typedef struct ItemColumns {
   int first, end, step;
 } ItemColumns;
 
-// `wanted`: how many an item makes of a row of `width`, at least; `block`: at once, on a CPU.
+// `wanted`: how many an item makes of a row of `width`, at least; `block`: at once, with eight lanes.
 static inline ItemColumns columns_of_item(int wanted, int width, int block) {
 #if LANES == 8
   const int count = (wanted + block - 1) / block * block;
@@ -86,7 +86,7 @@ static inline ItemColumns columns_of_item(int wanted, int width, int block) {
   return columns;
 }
 
-// How many pixels from x on are there; on a CPU more than a block may be.
+// How many pixels from x on are there; with eight lanes more than a block may be.
 static inline int pixels_from(ItemColumns columns, int x) {
   return kLanes > 1 ? columns.end - x : 1;
 }

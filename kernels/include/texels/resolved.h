@@ -20,7 +20,7 @@ static inline void store_output(OUTPUT_TEXELS texels, TexelLayout layout, int x,
 #endif
 }
 
-// kBlock neighbours of a row; where the device is no CPU only p0 counts. Not an array: PoCL keeps those in memory.
+// kBlock neighbours of a row; with LANES=1 only p0 counts. Not an array: PoCL keeps those in memory.
 typedef struct FourPixels {
   float4 p0, p1, p2, p3;
 } FourPixels;
