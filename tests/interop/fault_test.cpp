@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "cl_faults.h"
+#include "cl_imports.h"
 #include "cl_interposer.h"
+#include "gl_semaphores.h"
 #include "host_copy.h"
 #include "interop_fixture.h"
 #include "quincunx/advanced/extent.h"
@@ -21,6 +23,7 @@
 #include "quincunx/quincunx.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx/status.h"
+#include "skip.h"
 
 namespace quincunx::gl::testing {
 namespace {
@@ -150,6 +153,44 @@ TEST_F(FaultyBridge, AFrameFailsInWordsInBothForms) {
     }
     EXPECT_GT(at, 3) << "the calls of a frame are seen";
   }
+}
+
+// The same by memory that a stand-in imports, ordered by the device and by the host.
+TEST_F(FaultyBridge, ExternalMemoryFailsInWords) {
+  if (!has_vulkan() || !PretendSemaphores::works()) QUINCUNX_SKIP("there is no stand-in without lavapipe");
+  set_log([](LogLevel, const std::string&) {});  // semaphores that are left out
+  const PretendImports driver;
+  const PretendSemaphores semaphores;
+  device_ = std::make_unique<Device>(open_device(*context_, "", Interop::kCopy).value());
+  BridgeSettings settings = all_planes(kRender, kOutput);
+  settings.interop = Interop::kExternal;
+  int at = 0;
+  for (bool struck = true; struck; ++at) {
+    ASSERT_LT(at, kMoreThanAnyCalls);
+    const PretendFault fault(at, CL_OUT_OF_RESOURCES);
+    const auto bridge = Bridge::create(*context_, *device_, settings);
+    struck = fault.struck();
+    if (bridge.ok()) continue;  // without semaphores, where those failed
+    EXPECT_NE(bridge.status().message().find("CL_OUT_OF_RESOURCES"), std::string::npos)
+        << bridge.status().message();
+  }
+  EXPECT_GT(at, 20) << "the calls of a creation are seen";
+  at = 0;
+  for (bool struck = true; struck; ++at) {
+    ASSERT_LT(at, kMoreThanAnyCalls);
+    const auto bridge = Bridge::create(*context_, *device_, settings);
+    ASSERT_TRUE(bridge.ok()) << bridge.status().message();
+    ASSERT_TRUE(carry(*bridge.value()).ok());
+    const PretendFault fault(at, CL_OUT_OF_RESOURCES);
+    const Status status = carry(*bridge.value());
+    struck = fault.struck();
+    if (struck) expect_told(status, "CL_OUT_OF_RESOURCES");
+    if (!struck) {
+      EXPECT_TRUE(status.ok()) << status.message();
+    }
+  }
+  EXPECT_GT(at, 3) << "the calls of a frame are seen";
+  set_log({});
 }
 
 // A device that fails under the service: a Status in words, no exception, and later frames are right.
