@@ -20,7 +20,8 @@ import sys
 
 # Structs whose every field is compared, groups within them included.
 ROOTS = ("SceneNeeds", "ResolveSettings", "FrameInputs", "FocusInputs", "FrameOutputs", "FrameReport", "PassReport",
-         "FrameSync", "ImageView", "ContentStatistics", "FrameTiming", "QualityFrame", "QualityChoice",
+         "FrameSync", "ExternalMemory", "ImageView", "ContentStatistics", "FrameTiming", "QualityFrame",
+         "QualityChoice",
          "ProportionalSettings", "MinimumOfNSettings", "QualitySettings", "OutputSettings", "DetailSettings")
 LEAVES = ("Extent", "Vec2", "Rectangle", "MethodVariant")  # structs that count as one value
 

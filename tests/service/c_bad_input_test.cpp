@@ -89,7 +89,7 @@ struct Everything {
   quincunx_focus focus = {sizeof(focus), &region, 3, 2, rectangles, 2, 2, mask.image()};
   quincunx_fade fade = {sizeof(fade), other.image(), 0.5f, 0};
   void* done = nullptr;
-  quincunx_sync sync = {sizeof(sync), nullptr, 0, 0, nullptr};
+  quincunx_sync sync = {sizeof(sync), nullptr, 0, 0, nullptr, nullptr, nullptr, 0, 0};
   quincunx_outputs outputs = {sizeof(outputs), linear.image(), presented.image()};
 };
 

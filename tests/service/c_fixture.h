@@ -20,6 +20,7 @@ struct CDestroy {
   void operator()(quincunx_device* device) const { quincunx_device_destroy(device); }
   void operator()(quincunx_plan* plan) const { quincunx_plan_destroy(plan); }
   void operator()(quincunx_service* service) const { quincunx_service_destroy(service); }
+  void operator()(quincunx_memory* memory) const { quincunx_memory_destroy(memory); }
 };
 template <typename Object>
 using COwner = std::unique_ptr<Object, CDestroy>;

@@ -305,7 +305,7 @@ TEST(CSync, EventsInAndOut) {
   cl_event gate = clCreateUserEvent(device.context(), nullptr);
   void* waits[] = {gate};
   void* done = nullptr;
-  quincunx_sync sync = {sizeof(sync), waits, 1, 0, &done};
+  quincunx_sync sync = {sizeof(sync), waits, 1, 0, &done, nullptr, nullptr, 0, 0};
   inputs.sync = &sync;
   ASSERT_EQ(quincunx_dispatch(made, &inputs, &outputs, nullptr), QUINCUNX_OK) << quincunx_last_error();
   auto* end = static_cast<cl_event>(done);
@@ -331,6 +331,83 @@ TEST(CSync, EventsInAndOut) {
   EXPECT_TRUE(refuses("sync.wait_count is -1; it must be at least 0")) << quincunx_last_error();
 }
 
+// A pointer to memory of another API's, whose frames and pictures lie where they are.
+TEST(CMemory, FramesAndPicturesLieInMemoryOfOthers) {
+  const auto plan = c_plan({}, {.method = Method::kPoint,
+                                .output_extent = kOutput,
+                                .target_extent = kOutput,
+                                .colour = PixelFormat::kRGBA32F,
+                                .output = {.present = false}});
+  quincunx_device* opened = nullptr;
+  ASSERT_EQ(quincunx_device_open("cpu", &opened), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_device> device(opened);
+  quincunx_service* made = nullptr;
+  ASSERT_EQ(quincunx_service_create(opened, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_service> service(made);
+  constexpr std::size_t kFloats = 4 * std::size_t{kOutput.width} * kOutput.height, kBytes = 4 * kFloats;
+  struct alignas(4096) Page {
+    std::array<float, 1024> floats;
+  };
+  std::vector<Page> pages((2 * kBytes + sizeof(Page) - 1) / sizeof(Page));  // the frame, then the picture
+  float* const texels = pages.front().floats.data();
+  quincunx_external_memory external = {};
+  external.struct_size = sizeof(external);
+  external.handle = QUINCUNX_MAPPED;
+  external.mapped = texels;
+  external.bytes = 2 * kBytes;
+  quincunx_memory* imported = nullptr;
+  ASSERT_EQ(quincunx_memory_import(opened, &external, &imported), QUINCUNX_OK) << quincunx_last_error();
+  COwner<quincunx_memory> memory(imported);
+  quincunx_image in = {
+      sizeof(quincunx_image),          QUINCUNX_BUFFER, QUINCUNX_RGBA32F, kOutput.width, kOutput.height, 0, 0,
+      quincunx_memory_object(imported)};
+  quincunx_image out = in;
+  out.offset = kBytes;
+  quincunx_inputs inputs = {};
+  inputs.struct_size = sizeof(inputs);
+  inputs.colour = &in;
+  inputs.render_width = kOutput.width;
+  inputs.render_height = kOutput.height;
+  const quincunx_outputs outputs = {sizeof(outputs), &out, nullptr};
+  for (int frame = 1; frame <= 3; ++frame) {
+    for (std::size_t i = 0; i < kFloats; ++i)
+      texels[i] = static_cast<float>(frame) * static_cast<float>(i % 97);
+    ASSERT_EQ(quincunx_memory_acquire(imported), QUINCUNX_OK) << quincunx_last_error();
+    ASSERT_EQ(quincunx_dispatch(made, &inputs, &outputs, nullptr), QUINCUNX_OK) << quincunx_last_error();
+    void* done = nullptr;
+    ASSERT_EQ(quincunx_memory_release(imported, &done), QUINCUNX_OK) << quincunx_last_error();
+    auto* event = static_cast<cl_event>(done);
+    ASSERT_EQ(clWaitForEvents(1, &event), CL_SUCCESS);
+    clReleaseEvent(event);
+    EXPECT_TRUE(std::equal(texels, texels + kFloats, texels + kFloats)) << frame;
+  }
+
+  const auto refuses = [&](const quincunx_external_memory& bad, quincunx_status code, const char* words) {
+    quincunx_memory* none = imported;
+    return quincunx_memory_import(opened, &bad, &none) == code && none == nullptr &&
+           std::string(quincunx_last_error()).find(words) != std::string::npos;
+  };
+  quincunx_external_memory bad = external;
+  bad.handle = 3;
+  EXPECT_TRUE(refuses(bad, QUINCUNX_INVALID_ARGUMENT, "external.handle is 3")) << quincunx_last_error();
+  bad.handle = QUINCUNX_OPAQUE_FD;
+  EXPECT_TRUE(refuses(bad, QUINCUNX_UNSUPPORTED, "cl_khr_external_memory_opaque_fd"))
+      << quincunx_last_error();
+  bad = external;
+  bad.bytes = 0;
+  EXPECT_TRUE(refuses(bad, QUINCUNX_INVALID_ARGUMENT, "bytes is 0")) << quincunx_last_error();
+  quincunx_semaphore* semaphore = nullptr;
+  EXPECT_EQ(quincunx_semaphore_import(opened, 0, &semaphore), QUINCUNX_UNSUPPORTED);
+  EXPECT_EQ(quincunx_memory_acquire(nullptr), QUINCUNX_INVALID_ARGUMENT);
+  quincunx_sync sync = {};
+  sync.struct_size = sizeof(sync);
+  sync.wait_semaphore_count = 1;
+  inputs.sync = &sync;
+  EXPECT_EQ(quincunx_dispatch(made, &inputs, &outputs, nullptr), QUINCUNX_INVALID_ARGUMENT);
+  EXPECT_STREQ(quincunx_last_error(),
+               "sync.wait_semaphore_count is 1; wait_semaphores must point to so many, at least 0");
+}
+
 TEST(CSync, AFrameWhosePictureIsLostHasNoEvent) {
   const auto plan = c_plan({}, {.method = Method::kBilinear,
                                 .output_extent = kOutput,
@@ -345,7 +422,7 @@ TEST(CSync, AFrameWhosePictureIsLostHasNoEvent) {
   const COwner<quincunx_service> service(made);
   HostPicture colour(kOutput, PixelFormat::kRGBA32F), picture(kOutput, PixelFormat::kRGBA32F);
   void* done = nullptr;
-  quincunx_sync sync = {sizeof(sync), nullptr, 0, 0, &done};
+  quincunx_sync sync = {sizeof(sync), nullptr, 0, 0, &done, nullptr, nullptr, 0, 0};
   quincunx_inputs inputs = {};
   inputs.struct_size = sizeof(inputs);
   inputs.colour = colour.image();

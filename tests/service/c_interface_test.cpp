@@ -21,7 +21,8 @@ static_assert(sizeof(void*) != 8 ||
                sizeof(quincunx_image) == 48 && sizeof(quincunx_inputs) == 208 &&
                sizeof(quincunx_outputs) == 24 && sizeof(quincunx_report) == 112 &&
                sizeof(quincunx_particles) == 40 && sizeof(quincunx_focus) == 48 &&
-               sizeof(quincunx_fade) == 24 && sizeof(quincunx_sync) == 32 && sizeof(quincunx_content) == 64));
+               sizeof(quincunx_fade) == 24 && sizeof(quincunx_sync) == 56 && sizeof(quincunx_content) == 64 &&
+               sizeof(quincunx_external_memory) == 48));
 
 // ServiceRig's twin behind the C interface, all of whose images lie in host memory.
 class CRig {

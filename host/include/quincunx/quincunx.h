@@ -50,6 +50,8 @@ enum {
 typedef struct quincunx_device quincunx_device;
 typedef struct quincunx_plan quincunx_plan;
 typedef struct quincunx_service quincunx_service;
+typedef struct quincunx_memory quincunx_memory;
+typedef struct quincunx_semaphore quincunx_semaphore;
 
 QUINCUNX_API int32_t quincunx_api_version(void); /* of the library: QUINCUNX_API_VERSION when it was built */
 QUINCUNX_API const char* quincunx_version(void); /* "0.1.0"; static */
@@ -120,6 +122,28 @@ QUINCUNX_API const char* quincunx_device_pass_timer(const quincunx_device* devic
 QUINCUNX_API void* quincunx_device_context(const quincunx_device* device);
 QUINCUNX_API void* quincunx_device_id(const quincunx_device* device);
 QUINCUNX_API void* quincunx_device_queue(const quincunx_device* device);
+
+/* Its UUID; all 0 where the driver does not tell. */
+QUINCUNX_API void quincunx_device_uuid(const quincunx_device* device, uint8_t uuid[16]);
+
+/* Memory and binary semaphores of another API, as SharedMemory and Semaphore of advanced/external.h have them. They may
+ * be destroyed when the work that uses them is done. Errors: QUINCUNX_INVALID_ARGUMENT for a bad field and for memory
+ * of another device, QUINCUNX_UNSUPPORTED where the device takes no such handle, QUINCUNX_DEVICE_FAILURE. */
+enum { QUINCUNX_OPAQUE_FD = 0, QUINCUNX_DMA_BUF = 1, QUINCUNX_MAPPED = 2 };
+QUINCUNX_API quincunx_status quincunx_memory_import(const quincunx_device* device,
+                                                    const quincunx_external_memory* external,
+                                                    quincunx_memory** memory);
+QUINCUNX_API void quincunx_memory_destroy(quincunx_memory* memory);
+QUINCUNX_API void* quincunx_memory_object(const quincunx_memory* memory); /* a cl_mem, not retained */
+/* The other API owns the memory first. Each enqueues a change; `done` may be NULL, else it gets a cl_event of that,
+ * which the caller releases; NULL where nothing had to change. */
+QUINCUNX_API quincunx_status quincunx_memory_acquire(quincunx_memory* memory);
+QUINCUNX_API quincunx_status quincunx_memory_release(quincunx_memory* memory, void** done);
+QUINCUNX_API quincunx_status quincunx_semaphore_import(const quincunx_device* device, int32_t fd,
+                                                       quincunx_semaphore** semaphore);
+QUINCUNX_API void quincunx_semaphore_destroy(quincunx_semaphore* semaphore);
+QUINCUNX_API quincunx_status quincunx_semaphore_wait(quincunx_semaphore* semaphore);
+QUINCUNX_API quincunx_status quincunx_semaphore_signal(quincunx_semaphore* semaphore);
 
 /* Compiles or loads the plan's kernels and allocates. Device and plan may be destroyed after it. Errors:
  * QUINCUNX_UNSUPPORTED where the device lacks what the plan needs, QUINCUNX_DEVICE_FAILURE. */

@@ -113,6 +113,16 @@ Status read_sync(const quincunx_sync* given, FrameSync& to) {
     return Status::invalid(fmt::format("sync.wait_for is NULL; it must point to {} events", sync.wait_count));
   }
   to.wait_for = {reinterpret_cast<const cl_event*>(sync.wait_for), static_cast<std::size_t>(sync.wait_count)};
+  for (const auto& [name, semaphores, count, span] :
+       {std::tuple("wait_semaphore", sync.wait_semaphores, sync.wait_semaphore_count, &to.wait_semaphores),
+        std::tuple("signal_semaphore", sync.signal_semaphores, sync.signal_semaphore_count,
+                   &to.signal_semaphores)}) {
+    if (count < 0 || (count > 0 && semaphores == nullptr)) {
+      return Status::invalid(
+          fmt::format("sync.{0}_count is {1}; {0}s must point to so many, at least 0", name, count));
+    }
+    *span = {reinterpret_cast<Semaphore* const*>(semaphores), static_cast<std::size_t>(count)};
+  }
   return {};
 }
 

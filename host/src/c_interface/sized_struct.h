@@ -42,6 +42,8 @@ template <>
 inline constexpr std::size_t kFirstSize<quincunx_sync> = 32;
 template <>
 inline constexpr std::size_t kFirstSize<quincunx_content> = 64;
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_external_memory> = 48;
 template <typename Struct>
 Status check_size(const Struct* given, const char* name) {
   if (given == nullptr) return Status::invalid(fmt::format("{} is NULL; it must point to one", name));

@@ -59,7 +59,19 @@ typedef struct quincunx_fade {
   int32_t padding;            /* 0 */
 } quincunx_fade;
 
-/* What a frame's work has to do with that of other queues of the device's context. */
+/* Memory of another API, to be imported: external.h. */
+typedef struct quincunx_external_memory {
+  size_t struct_size; /* sizeof(quincunx_external_memory) */
+  int32_t handle;     /* QUINCUNX_OPAQUE_FD, QUINCUNX_DMA_BUF or QUINCUNX_MAPPED */
+  int32_t fd;         /* stays the caller's */
+  void* mapped;       /* of QUINCUNX_MAPPED, at least 128 bytes aligned */
+  size_t bytes;       /* at most as large as it was allocated */
+  uint8_t device[16]; /* the UUID of the device that it was allocated on; all 0: not checked */
+} quincunx_external_memory;
+
+struct quincunx_semaphore;
+
+/* What a frame's work has to do with that of other queues of the device's context, and with other APIs. */
 typedef struct quincunx_sync {
   size_t struct_size;    /* sizeof(quincunx_sync) */
   void* const* wait_for; /* cl_event: the frame's work begins when all are complete */
@@ -68,6 +80,11 @@ typedef struct quincunx_sync {
   /* Where not NULL, gets a cl_event that is complete when the frame's work is, which the caller releases; NULL where
    * the frame was refused or failed. */
   void** done;
+  /* The frame's work begins when each of the former was signalled; at its end each of the latter is. */
+  struct quincunx_semaphore* const* wait_semaphores;
+  struct quincunx_semaphore* const* signal_semaphores;
+  int32_t wait_semaphore_count;
+  int32_t signal_semaphore_count;
 } quincunx_sync;
 
 /* Memory objects stay unchanged until the frame's work is done and, where quincunx_needs has keeps_previous_frame,
