@@ -204,7 +204,7 @@ void Exporter::probe(const Device& device) const {
   std::optional<DeviceOrder> order = this->order(own);
   const std::vector<std::uint8_t> from_gl = pattern(kBytes, 1);
   const std::vector<std::uint8_t> from_cl = pattern(kBytes, 2);
-  std::vector<std::uint8_t> seen(kBytes);
+  auto seen = std::make_unique<std::vector<std::uint8_t>>(kBytes);
 
   const Buffer source = Buffer::create();
   {
@@ -216,20 +216,19 @@ void Exporter::probe(const Device& device) const {
   if (order) order->cl_waits();
   check_status(shared.cl->acquire());
   cl_event event = nullptr;
-  check_cl(clEnqueueReadBuffer(own.queue(), shared.cl->memory(), CL_FALSE, 0, kBytes, seen.data(), 0, nullptr,
-                               &event),
+  check_cl(clEnqueueReadBuffer(own.queue(), shared.cl->memory(), CL_FALSE, 0, kBytes, seen->data(), 0,
+                               nullptr, &event),
            "clEnqueueReadBuffer");
   const ClEvent read = ClEvent::adopt(event);
-  check_cl(clFlush(own.queue()), "clFlush");
   try {
+    check_cl(clFlush(own.queue()), "clFlush");
     wait_for(read, kLimit);
   } catch (...) {
-    static std::vector<std::uint8_t>* const written_later =
-        new std::vector<std::uint8_t>;  // should it come yet
-    written_later->swap(seen);
+    static_cast<void>(seen.release());  // it may be written yet, and the memory read
+    static_cast<void>(new ExternalBuffer(std::move(shared)));
     throw;
   }
-  if (seen != from_gl) throw InteropError("OpenCL read other bytes than OpenGL wrote");
+  if (*seen != from_gl) throw InteropError("OpenCL read other bytes than OpenGL wrote");
 
   check_cl(clEnqueueWriteBuffer(own.queue(), shared.cl->memory(), CL_TRUE, 0, kBytes, from_cl.data(), 0,
                                 nullptr, nullptr),

@@ -78,7 +78,8 @@ TEST_F(BridgeSettingsTest, GlIsRefusedWhereTheDeviceDoesNotShare) {
 }
 
 TEST_F(BridgeSettingsTest, AutoFallsBackAndSaysWhy) {
-  if (device_->info().gl_sharing) QUINCUNX_SKIP("this device shares with OpenGL");
+  if (device_->info().gl_sharing || device_->info().imports_opaque_fds)
+    QUINCUNX_SKIP("this device shares with OpenGL");
   auto bridge = Bridge::create(*context_, *device_, {.target_extent = {16, 16}, .output_extent = {16, 16}});
   ASSERT_TRUE(bridge.ok()) << bridge.status().message();
   EXPECT_EQ(bridge.value()->kind(), Interop::kCopy);
@@ -96,7 +97,7 @@ TEST_F(BridgeSettingsTest, OpenDeviceInsistsOnGlOrFallsBack) {
     ASSERT_TRUE(any.ok()) << any.status().message();
     EXPECT_EQ(any->info().name, device_->info().name);
   }
-  for (const Interop interop : {Interop::kAuto, Interop::kGl, Interop::kCopy}) {
+  for (const Interop interop : {Interop::kAuto, Interop::kGl, Interop::kExternal, Interop::kCopy}) {
     EXPECT_EQ(open_device(*context_, "no such device", interop).status().code(),
               StatusCode::kInvalidArgument);
   }
@@ -105,6 +106,7 @@ TEST_F(BridgeSettingsTest, OpenDeviceInsistsOnGlOrFallsBack) {
 TEST(InteropName, IsTheOptionsWord) {
   EXPECT_STREQ(name_of(Interop::kAuto), "auto");
   EXPECT_STREQ(name_of(Interop::kGl), "gl");
+  EXPECT_STREQ(name_of(Interop::kExternal), "external");
   EXPECT_STREQ(name_of(Interop::kCopy), "copy");
 }
 
