@@ -103,8 +103,9 @@ void BufferReader::release() {
 }
 
 DeviceOrder::Direction DeviceOrder::make(const VulkanDevice& vulkan, const Device& device) {
-  auto [for_gl, for_cl] = vulkan.semaphore();
+  auto [for_gl, for_cl, kept] = vulkan.semaphore();
   Direction made;
+  made.kept = std::move(kept);
   made.gl = Handle<GlSemaphoreTraits>::create();
   glImportSemaphoreFdEXT(made.gl.get(), GL_HANDLE_TYPE_OPAQUE_FD_EXT, for_gl.get());
   check_gl("glImportSemaphoreFdEXT");
@@ -260,7 +261,7 @@ std::shared_ptr<const Exporter> Exporter::create(const Device& device, bool sema
     throw InteropError(fmt::format("'{}' is the device {}, and OpenGL draws on the device {}", info.name,
                                    text_of(info.uuid), text_of(made->uuid_)));
   }
-  made->vulkan_ = VulkanDevice::open(made->uuid_);
+  made->vulkan_ = &VulkanDevice::open(made->uuid_);
   made->semaphores_ = semaphores && info.imports_semaphores && made->vulkan_->has_semaphores() &&
                       epoxy_has_gl_extension("GL_EXT_semaphore_fd");
   try {

@@ -52,6 +52,7 @@ class DeviceOrder {
 
  private:
   struct Direction {
+    std::shared_ptr<void> kept;
     Handle<GlSemaphoreTraits> gl;
     std::optional<Semaphore> cl;
     bool signalled = false;  // and not waited for yet
@@ -79,7 +80,7 @@ class Exporter {
   Exporter() = default;
   void probe(const Device& device) const;
 
-  std::shared_ptr<VulkanDevice> vulkan_;
+  const VulkanDevice* vulkan_ = nullptr;
   DeviceUuid uuid_ = {};
   bool mapped_ = false;
   bool semaphores_ = false;

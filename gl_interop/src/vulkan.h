@@ -173,7 +173,6 @@ using GetDeviceProcAddr = VoidFunction (*)(Device, const char*);
 
 // Functions by their names without "vk".
 struct InstanceFunctions {
-  void (*DestroyInstance)(Instance, const void*);
   Result (*EnumeratePhysicalDevices)(Instance, std::uint32_t*, PhysicalDevice*);
   Result (*EnumerateDeviceExtensionProperties)(PhysicalDevice, const char*, std::uint32_t*,
                                                ExtensionProperties*);
@@ -185,7 +184,6 @@ struct InstanceFunctions {
   GetDeviceProcAddr DeviceProcAddr;  // vkGetDeviceProcAddr
 };
 struct DeviceFunctions {
-  void (*DestroyDevice)(Device, const void*);
   Result (*CreateBuffer)(Device, const BufferCreateInfo*, const void*, Buffer*);
   void (*DestroyBuffer)(Device, Buffer, const void*);
   void (*GetBufferMemoryRequirements2)(Device, const BufferMemoryRequirementsInfo2*, MemoryRequirements2*);

@@ -11,7 +11,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <mutex>
 #include <sstream>
+#include <vector>
 
 #include "cl_handle.h"
 
@@ -80,21 +83,32 @@ Fd::~Fd() {
   if (fd_ >= 0) ::close(fd_);
 }
 
-std::shared_ptr<VulkanDevice> VulkanDevice::open(const DeviceUuid& uuid) {
-  std::string tried;
-  const auto try_through = [&](const std::string& library, const char* entry) {
-    std::shared_ptr<VulkanDevice> device(new VulkanDevice);
-    const std::string why = device->open_through(library, entry, uuid);
-    if (why.empty()) return device;
-    tried += fmt::format("{}{}: {}", tried.empty() ? "" : "; ", library, why);
-    return std::shared_ptr<VulkanDevice>();
+const VulkanDevice& VulkanDevice::open(const DeviceUuid& uuid) {
+  struct Known {
+    std::unique_ptr<VulkanDevice> device;
+    std::string why_not;
   };
-  if (auto device = try_through("libvulkan.so.1", "vkGetInstanceProcAddr")) return device;
-  for (const std::string& library : driver_libraries()) {
-    if (auto device = try_through(library, "vk_icdGetInstanceProcAddr")) return device;
+  static std::mutex mutex;
+  static auto* const known = new std::map<DeviceUuid, Known>;
+  const std::lock_guard lock(mutex);
+  const auto [entry, is_new] = known->try_emplace(uuid);
+  Known& its = entry->second;
+  const auto try_through = [&](const std::string& library, const char* symbol) {
+    if (its.device) return;
+    // Left as it is where it fails, for the same reason.
+    auto* const device = new VulkanDevice;
+    const std::string why = device->open_through(library, symbol, uuid);
+    if (why.empty()) its.device.reset(device);
+    if (!why.empty()) its.why_not += fmt::format("{}{}: {}", its.why_not.empty() ? "" : "; ", library, why);
+  };
+  if (is_new) {
+    try_through("libvulkan.so.1", "vkGetInstanceProcAddr");
+    for (const std::string& library : driver_libraries())
+      try_through(library, "vk_icdGetInstanceProcAddr");
   }
+  if (its.device) return *its.device;
   throw InteropError(
-      fmt::format("Vulkan, which allocates such memory, has no device that suits ({})", tried));
+      fmt::format("Vulkan, which allocates such memory, has no device that suits ({})", its.why_not));
 }
 
 // Returns "" or what is in the way.
@@ -120,7 +134,6 @@ std::string VulkanDevice::open_through(const std::string& library, const char* e
   }
   vk::InstanceFunctions& f = instance_functions_;
   const bool whole =
-      find(get(instance_, "vkDestroyInstance"), &f.DestroyInstance) &&
       find(get(instance_, "vkEnumeratePhysicalDevices"), &f.EnumeratePhysicalDevices) &&
       find(get(instance_, "vkEnumerateDeviceExtensionProperties"), &f.EnumerateDeviceExtensionProperties) &&
       find(get(instance_, "vkGetPhysicalDeviceProperties2"), &f.GetPhysicalDeviceProperties2) &&
@@ -173,8 +186,7 @@ std::string VulkanDevice::make_device() {
   const auto get = [&](const char* name) { return instance_functions_.DeviceProcAddr(device_, name); };
   vk::DeviceFunctions& f = functions_;
   const bool whole =
-      find(get("vkDestroyDevice"), &f.DestroyDevice) && find(get("vkCreateBuffer"), &f.CreateBuffer) &&
-      find(get("vkDestroyBuffer"), &f.DestroyBuffer) &&
+      find(get("vkCreateBuffer"), &f.CreateBuffer) && find(get("vkDestroyBuffer"), &f.DestroyBuffer) &&
       find(get("vkGetBufferMemoryRequirements2"), &f.GetBufferMemoryRequirements2) &&
       find(get("vkAllocateMemory"), &f.AllocateMemory) && find(get("vkFreeMemory"), &f.FreeMemory) &&
       find(get("vkBindBufferMemory"), &f.BindBufferMemory) && find(get("vkMapMemory"), &f.MapMemory) &&
@@ -183,14 +195,6 @@ std::string VulkanDevice::make_device() {
   if (!whole) return "its device lacks functions of Vulkan 1.1";
   if (wanted.size() > 1) find(get("vkGetSemaphoreFdKHR"), &f.GetSemaphoreFd);
   return {};
-}
-
-VulkanDevice::~VulkanDevice() {
-  for (const vk::Semaphore semaphore : semaphores_)
-    functions_.DestroySemaphore(device_, semaphore, nullptr);
-  if (device_ != nullptr && functions_.DestroyDevice != nullptr) functions_.DestroyDevice(device_, nullptr);
-  if (instance_ != nullptr && instance_functions_.DestroyInstance != nullptr)
-    instance_functions_.DestroyInstance(instance_, nullptr);
 }
 
 std::uint32_t VulkanDevice::memory_type(std::uint32_t allowed, Place place) const {
@@ -211,7 +215,7 @@ std::unique_ptr<VulkanDevice::Memory> VulkanDevice::allocate(std::size_t bytes, 
   instance_functions_.GetPhysicalDeviceExternalBufferProperties(physical_, &external, &can);
   if ((can.features & vk::kExportable) == 0) throw InteropError("Vulkan exports no buffers as opaque fds");
 
-  std::unique_ptr<Memory> made(new Memory(shared_from_this()));
+  std::unique_ptr<Memory> made(new Memory(*this));
   const vk::ExternalMemoryBufferCreateInfo handles;
   const vk::BufferCreateInfo info = {.head = {12, &handles}, .size = bytes, .usage = kBufferUsage};
   check_vk(functions_.CreateBuffer(device_, &info, nullptr, &made->buffer_), "vkCreateBuffer");
@@ -239,33 +243,31 @@ std::unique_ptr<VulkanDevice::Memory> VulkanDevice::allocate(std::size_t bytes, 
 }
 
 VulkanDevice::Memory::~Memory() {
-  if (buffer_ != 0) device_->functions_.DestroyBuffer(device_->device_, buffer_, nullptr);
-  if (memory_ != 0) device_->functions_.FreeMemory(device_->device_, memory_, nullptr);  // and unmaps it
+  if (buffer_ != 0) device_.functions_.DestroyBuffer(device_.device_, buffer_, nullptr);
+  if (memory_ != 0) device_.functions_.FreeMemory(device_.device_, memory_, nullptr);  // and unmaps it
 }
 
 Fd VulkanDevice::Memory::fd() const {
   const vk::MemoryGetFdInfo info = {.memory = memory_};
   int fd = -1;
-  check_vk(device_->functions_.GetMemoryFd(device_->device_, &info, &fd), "vkGetMemoryFdKHR");
+  check_vk(device_.functions_.GetMemoryFd(device_.device_, &info, &fd), "vkGetMemoryFdKHR");
   return Fd(fd);
 }
 
-std::pair<Fd, Fd> VulkanDevice::semaphore() const {
+VulkanDevice::SharedSemaphore VulkanDevice::semaphore() const {
   const vk::ExportSemaphoreCreateInfo exported;
   const vk::SemaphoreCreateInfo info = {.head = {9, &exported}};
   vk::Semaphore made = 0;
   check_vk(functions_.CreateSemaphore(device_, &info, nullptr, &made), "vkCreateSemaphore");
-  semaphores_.push_back(made);
-  const auto export_one = [&] {
+  SharedSemaphore shared;
+  shared.kept = {nullptr, [this, made](void*) { functions_.DestroySemaphore(device_, made, nullptr); }};
+  for (Fd* to : {&shared.first, &shared.second}) {
     const vk::SemaphoreGetFdInfo of = {.semaphore = made};
     int fd = -1;
-    const vk::Result code = functions_.GetSemaphoreFd(device_, &of, &fd);
-    return std::pair(code, Fd(code == 0 ? fd : -1));
-  };
-  auto [first_code, first] = export_one();
-  auto [second_code, second] = export_one();
-  check_vk(first_code != 0 ? first_code : second_code, "vkGetSemaphoreFdKHR");
-  return {std::move(first), std::move(second)};
+    check_vk(functions_.GetSemaphoreFd(device_, &of, &fd), "vkGetSemaphoreFdKHR");
+    *to = Fd(fd);
+  }
+  return shared;
 }
 
 }  // namespace quincunx::gl

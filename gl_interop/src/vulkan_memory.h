@@ -7,7 +7,6 @@
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "quincunx/advanced/external.h"
 #include "vulkan.h"
@@ -35,12 +34,12 @@ class Fd {
   int fd_ = -1;
 };
 
-// Vulkan's device of a UUID, through the loader, or the drivers themselves where no loader is installed.
-class VulkanDevice : public std::enable_shared_from_this<VulkanDevice> {
+// Vulkan's device of a UUID, through the loader, or the drivers themselves where no loader is installed. It stays until
+// the process ends: with an instance of NVIDIA's (580.159) EGL's display goes, and with that OpenGL's context.
+class VulkanDevice {
  public:
-  // Throws InteropError, which says what kept it.
-  static std::shared_ptr<VulkanDevice> open(const DeviceUuid& uuid);
-  ~VulkanDevice();
+  // Opens it once. Throws InteropError, which says what kept it. Thread-safe.
+  static const VulkanDevice& open(const DeviceUuid& uuid);
   VulkanDevice(const VulkanDevice&) = delete;
   VulkanDevice& operator=(const VulkanDevice&) = delete;
 
@@ -57,8 +56,8 @@ class VulkanDevice : public std::enable_shared_from_this<VulkanDevice> {
 
    private:
     friend class VulkanDevice;
-    explicit Memory(std::shared_ptr<const VulkanDevice> device) : device_(std::move(device)) {}
-    std::shared_ptr<const VulkanDevice> device_;
+    explicit Memory(const VulkanDevice& device) : device_(device) {}
+    const VulkanDevice& device_;
     vk::Buffer buffer_ = 0;
     vk::DeviceMemory memory_ = 0;
     std::size_t size_ = 0;
@@ -70,8 +69,12 @@ class VulkanDevice : public std::enable_shared_from_this<VulkanDevice> {
   std::unique_ptr<Memory> allocate(std::size_t bytes, Place place) const;
 
   bool has_semaphores() const { return functions_.GetSemaphoreFd != nullptr; }
-  // A binary semaphore, not signalled, twice, for its two importers. Throws InteropError.
-  std::pair<Fd, Fd> semaphore() const;
+  // A binary semaphore, not signalled, for two importers; `kept` outlives both.
+  struct SharedSemaphore {
+    Fd first, second;
+    std::shared_ptr<void> kept;
+  };
+  SharedSemaphore semaphore() const;  // throws InteropError
 
  private:
   VulkanDevice() = default;
@@ -84,7 +87,6 @@ class VulkanDevice : public std::enable_shared_from_this<VulkanDevice> {
   vk::Device device_ = nullptr;
   vk::InstanceFunctions instance_functions_ = {};
   vk::DeviceFunctions functions_ = {};
-  mutable std::vector<vk::Semaphore> semaphores_;  // those that were exported, until the device goes
 };
 
 }  // namespace quincunx::gl

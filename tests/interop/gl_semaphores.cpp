@@ -73,10 +73,6 @@ void exchange() {
   std::swap(epoxy_glWaitSemaphoreEXT, g_others.wait);
 }
 
-void tell_loader(bool pretends) {
-  reinterpret_cast<void (*)(bool)>(dlsym(g_loader, "pretend_semaphores"))(pretends);
-}
-
 }  // namespace
 
 PretendSemaphores::PretendSemaphores(Flaw flaw) {
@@ -85,13 +81,11 @@ PretendSemaphores::PretendSemaphores(Flaw flaw) {
   g_uses = 0;
   g_faults = 0;
   exchange();
-  tell_loader(true);
 }
 
 PretendSemaphores::~PretendSemaphores() {
   g_pretends = false;
   exchange();
-  tell_loader(false);
 }
 
 bool PretendSemaphores::works() {

@@ -126,7 +126,8 @@ inline BridgeSettings all_planes(Extent target, Extent output, PixelFormat colou
 // Whether Vulkan has the device that OpenGL draws on.
 inline bool has_vulkan() {
   try {
-    return VulkanDevice::open(gl_device_uuid()) != nullptr;
+    VulkanDevice::open(gl_device_uuid());
+    return true;
   } catch (const InteropError&) {
     return false;
   }

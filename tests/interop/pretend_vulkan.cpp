@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Stands before Vulkan's loader, as a library of the same name that is loaded first: while pretend_semaphores() says
-// so, every device exports semaphores as opaque fds (VK_KHR_external_semaphore_fd), which lavapipe does not. They are
-// eventfds.
+// Stands before Vulkan's loader, as a library of the same name that is loaded first. Devices export semaphores as
+// opaque fds (VK_KHR_external_semaphore_fd), where they do not themselves, as lavapipe: they are eventfds. And with a
+// device or an instance OpenGL's context goes, as with NVIDIA's.
 #include <dlfcn.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -19,8 +19,6 @@ namespace {
 
 constexpr const char* kExtension = "VK_KHR_external_semaphore_fd";
 
-bool g_pretends = false;
-
 vk::GetInstanceProcAddr real() {
   static const auto found = reinterpret_cast<vk::GetInstanceProcAddr>(
       dlsym(dlopen(QUINCUNX_VULKAN_LOADER, RTLD_NOW | RTLD_LOCAL), "vkGetInstanceProcAddr"));
@@ -34,21 +32,36 @@ Function* of_instance(const char* name) {
   return reinterpret_cast<Function*>(real()(g_instance, name));
 }
 
-vk::Result extensions(vk::PhysicalDevice device, const char* layer, std::uint32_t* count,
+std::vector<vk::ExtensionProperties> offered(vk::PhysicalDevice device) {
+  using Ask = vk::Result(vk::PhysicalDevice, const char*, std::uint32_t*, vk::ExtensionProperties*);
+  auto* const ask = of_instance<Ask>("vkEnumerateDeviceExtensionProperties");
+  std::uint32_t count = 0;
+  ask(device, nullptr, &count, nullptr);
+  std::vector<vk::ExtensionProperties> all(count);
+  ask(device, nullptr, &count, all.data());
+  return all;
+}
+
+bool has_its_own(vk::PhysicalDevice device) {
+  const auto all = offered(device);
+  return std::any_of(all.begin(), all.end(),
+                     [](const auto& one) { return std::strcmp(one.name, kExtension) == 0; });
+}
+
+vk::Result extensions(vk::PhysicalDevice device, const char*, std::uint32_t* count,
                       vk::ExtensionProperties* to) {
-  std::uint32_t known = *count;
-  if (to != nullptr) --known;
-  const vk::Result code =
-      of_instance<decltype(extensions)>("vkEnumerateDeviceExtensionProperties")(device, layer, &known, to);
-  if (to != nullptr) std::strcpy(to[known].name, kExtension);
-  *count = known + 1;
-  return code;
+  auto all = offered(device);
+  if (!has_its_own(device)) std::strcpy(all.emplace_back().name, kExtension);
+  *count = static_cast<std::uint32_t>(all.size());
+  if (to != nullptr) std::copy(all.begin(), all.end(), to);
+  return 0;
 }
 
 vk::Result create_device(vk::PhysicalDevice physical, const vk::DeviceCreateInfo* info, const void* allocator,
                          vk::Device* to) {
   std::vector<const char*> wanted(info->extensions, info->extensions + info->extension_count);
-  std::erase_if(wanted, [](std::string_view name) { return name == kExtension; });
+  const bool pretends = !has_its_own(physical);
+  std::erase_if(wanted, [&](std::string_view name) { return pretends && name == kExtension; });
   vk::DeviceCreateInfo own = *info;
   own.extensions = wanted.data();
   own.extension_count = static_cast<std::uint32_t>(wanted.size());
@@ -69,25 +82,38 @@ vk::Result get_semaphore_fd(vk::Device, const vk::SemaphoreGetFdInfo* info, int*
   return 0;
 }
 
+void end_context() {
+  void* const egl = dlopen("libEGL.so.1", RTLD_NOW | RTLD_NOLOAD);
+  const auto display = reinterpret_cast<void* (*)()>(dlsym(egl, "eglGetCurrentDisplay"));
+  reinterpret_cast<unsigned (*)(void*, void*, void*, void*)>(dlsym(egl, "eglMakeCurrent"))(display(), nullptr,
+                                                                                           nullptr, nullptr);
+}
+void destroy_device(vk::Device, const void*) {
+  end_context();
+}
+void destroy_instance(vk::Instance, const void*) {
+  end_context();
+}
+
 vk::VoidFunction of_device(vk::Device device, const char* name) {
   const std::string_view wanted = name;
+  if (wanted == "vkDestroyDevice") return reinterpret_cast<vk::VoidFunction>(&destroy_device);
+  const vk::VoidFunction its_own = of_instance<decltype(of_device)>("vkGetDeviceProcAddr")(device, name);
+  if (of_instance<decltype(of_device)>("vkGetDeviceProcAddr")(device, "vkGetSemaphoreFdKHR") != nullptr)
+    return its_own;
   if (wanted == "vkCreateSemaphore") return reinterpret_cast<vk::VoidFunction>(&create_semaphore);
   if (wanted == "vkDestroySemaphore") return reinterpret_cast<vk::VoidFunction>(&destroy_semaphore);
   if (wanted == "vkGetSemaphoreFdKHR") return reinterpret_cast<vk::VoidFunction>(&get_semaphore_fd);
-  return of_instance<decltype(of_device)>("vkGetDeviceProcAddr")(device, name);
+  return its_own;
 }
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) void pretend_semaphores(bool pretends) {
-  g_pretends = pretends;
-}
-
 extern "C" __attribute__((visibility("default"))) vk::VoidFunction vkGetInstanceProcAddr(
     vk::Instance instance, const char* name) {
-  if (!g_pretends) return real()(instance, name);
   g_instance = instance;
   const std::string_view wanted = name;
+  if (wanted == "vkDestroyInstance") return reinterpret_cast<vk::VoidFunction>(&destroy_instance);
   if (wanted == "vkEnumerateDeviceExtensionProperties")
     return reinterpret_cast<vk::VoidFunction>(&extensions);
   if (wanted == "vkCreateDevice") return reinterpret_cast<vk::VoidFunction>(&create_device);

@@ -47,6 +47,7 @@ struct FrameSync {
   std::span<const cl_event> wait_for = {};  // the frame's work begins when all of these are complete
   // Semaphores of another API (advanced/external.h), imported by the service's device: each of the former was signalled
   // before the frame's work begins, each of the latter is when it is done; not where the frame was refused or failed.
+  // For memory that changes sides: Semaphore::wait() before SharedMemory::acquire(), and signal() after release().
   std::span<Semaphore* const> wait_semaphores = {};
   std::span<Semaphore* const> signal_semaphores = {};
   // Where not null, gets an event that is complete when the frame's work is, which the caller releases; null where the
