@@ -59,7 +59,7 @@ pack_programs() {
   cp kernels/variants.txt "$folder/quincunx/kernels"
   {
     ldd "${programs[@]/#/$build/bin/}"
-    ldconfig -p | grep -E 'lib(EGL|OpenGL|GLdispatch|GLESv2)\.so\.[0-9]+ .*x86-64'
+    ldconfig -p | grep -E 'lib(EGL|OpenGL|GLdispatch|GLESv2|vulkan)\.so\.[0-9]+ .*x86-64'
   } | grep -oE '/[^ ]+\.so[^ :]*' | sort -u | xargs cp -Lt "$folder/quincunx/lib"
   git rev-parse --short HEAD >"$folder/quincunx/commit"
   tar -C "$folder" -caf "$pack" quincunx
@@ -170,15 +170,16 @@ say '' '## Speed against error'
 told "quincunx-bench --quick --scenes courtyard"
 block bench.log
 
-# The same frames by shared textures and by copies are the same pictures.
+# The same frames by each way are the same pictures.
 say '' '## Frames from OpenGL'
 frames=(--scene courtyard --method temporal --scale-path random --frames 20)
-for way in gl copy; do
-  limited 3 "interop_$way.log" quincunx-render --interop "$way" "${frames[@]}" --out "$out/$way/frame.%04d.png"
+for way in gl external copy; do
+  limited 2 "interop_$way.log" quincunx-render --interop "$way" "${frames[@]}" --out "$out/$way/frame.%04d.png"
   told "quincunx-render --interop $way ${frames[*]}"
   block "interop_$way.log"
 done
-if [[ -d "$out/gl" && -d "$out/copy" ]]; then
-  say '' "Pictures of both ways: $(diff -rq "$out/gl" "$out/copy" >/dev/null && echo 'the same bits' || echo 'different bits')."
-fi
+for way in gl external; do
+  [[ -d "$out/$way" && -d "$out/copy" ]] || continue
+  say '' "Pictures of $way and copy: $(diff -rq "$out/$way" "$out/copy" >/dev/null && echo 'the same bits' || echo 'different bits')."
+done
 printf 'The report: %s\n' "$report" >&2
