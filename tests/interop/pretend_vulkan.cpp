@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Stands before Vulkan's loader, as a library of the same name that is loaded first. Devices export semaphores as
-// opaque fds (VK_KHR_external_semaphore_fd), where they do not themselves, as lavapipe: they are eventfds. And with a
-// device or an instance OpenGL's context goes, as with NVIDIA's.
+// Stands before Vulkan's loader, as a library of the same name that is loaded first. Processors export semaphores as
+// opaque fds (VK_KHR_external_semaphore_fd), which lavapipe does not: they are eventfds. And with a device or an
+// instance OpenGL's context goes, as with NVIDIA's.
 #include <dlfcn.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -42,16 +42,24 @@ std::vector<vk::ExtensionProperties> offered(vk::PhysicalDevice device) {
   return all;
 }
 
-bool has_its_own(vk::PhysicalDevice device) {
-  const auto all = offered(device);
-  return std::any_of(all.begin(), all.end(),
-                     [](const auto& one) { return std::strcmp(one.name, kExtension) == 0; });
+// Whether the device gets semaphores of ours: a processor, whatever it has of its own.
+bool is_processor(vk::PhysicalDevice device) {
+  constexpr std::uint32_t kCpu = 4;  // VK_PHYSICAL_DEVICE_TYPE_CPU
+  vk::PhysicalDeviceProperties2 properties = {};
+  of_instance<void(vk::PhysicalDevice, vk::PhysicalDeviceProperties2*)>("vkGetPhysicalDeviceProperties2")(
+      device, &properties);
+  return properties.rest[3] == kCpu;
 }
+
+bool g_pretends = false;  // for the device that was made last
 
 vk::Result extensions(vk::PhysicalDevice device, const char*, std::uint32_t* count,
                       vk::ExtensionProperties* to) {
   auto all = offered(device);
-  if (!has_its_own(device)) std::strcpy(all.emplace_back().name, kExtension);
+  if (is_processor(device)) {
+    std::erase_if(all, [](const auto& one) { return std::strcmp(one.name, kExtension) == 0; });
+    std::strcpy(all.emplace_back().name, kExtension);
+  }
   *count = static_cast<std::uint32_t>(all.size());
   if (to != nullptr) std::copy(all.begin(), all.end(), to);
   return 0;
@@ -60,8 +68,8 @@ vk::Result extensions(vk::PhysicalDevice device, const char*, std::uint32_t* cou
 vk::Result create_device(vk::PhysicalDevice physical, const vk::DeviceCreateInfo* info, const void* allocator,
                          vk::Device* to) {
   std::vector<const char*> wanted(info->extensions, info->extensions + info->extension_count);
-  const bool pretends = !has_its_own(physical);
-  std::erase_if(wanted, [&](std::string_view name) { return pretends && name == kExtension; });
+  g_pretends = is_processor(physical);
+  std::erase_if(wanted, [](std::string_view name) { return g_pretends && name == kExtension; });
   vk::DeviceCreateInfo own = *info;
   own.extensions = wanted.data();
   own.extension_count = static_cast<std::uint32_t>(wanted.size());
@@ -99,8 +107,7 @@ vk::VoidFunction of_device(vk::Device device, const char* name) {
   const std::string_view wanted = name;
   if (wanted == "vkDestroyDevice") return reinterpret_cast<vk::VoidFunction>(&destroy_device);
   const vk::VoidFunction its_own = of_instance<decltype(of_device)>("vkGetDeviceProcAddr")(device, name);
-  if (of_instance<decltype(of_device)>("vkGetDeviceProcAddr")(device, "vkGetSemaphoreFdKHR") != nullptr)
-    return its_own;
+  if (!g_pretends) return its_own;
   if (wanted == "vkCreateSemaphore") return reinterpret_cast<vk::VoidFunction>(&create_semaphore);
   if (wanted == "vkDestroySemaphore") return reinterpret_cast<vk::VoidFunction>(&destroy_semaphore);
   if (wanted == "vkGetSemaphoreFdKHR") return reinterpret_cast<vk::VoidFunction>(&get_semaphore_fd);
