@@ -106,7 +106,7 @@ typedef struct CellGrid {
 
 static inline CellGrid cells_around(__global const TileEvidence* evidence, int tiles_x, int tiles_y, int x, int y) {
   float brightening[16], brighter[16], count[16];
-  UNROLL(16)
+  UNROLL_ALWAYS(16)
   for (int i = 0; i < 16; ++i) {
     const int column = x + (i % 4 + 1) / 2 - 1, row = y + (i / 4 + 1) / 2 - 1;  // of the cell's tile
     CellEvidence cell = {0.0f, 0.0f, 0.0f};
@@ -153,6 +153,7 @@ static inline float output_of(float16 hidden) {
 static inline float4 judge(const float4* inputs) {
   const float16 biases = vload16(0, kBiases);
   float16 a = biases, b = biases, c = biases, d = biases;
+  UNROLL_LANE(JUDGE_INPUTS)
   for (int i = 0; i < JUDGE_INPUTS; ++i) {
     const float4 input = clamp(inputs[i], -JUDGE_INPUT_MAX, JUDGE_INPUT_MAX);
     const float16 weights = vload16(i, kInputWeights);
@@ -218,6 +219,7 @@ static inline TileLight remember(__global const TileLight* previous, TileReproje
   const int from_y = source_of(y, kTemporalTile, tile.step_y, tiles_y);
   TileLight before = previous[from_y * tiles_x + from_x];
   if (tile.step_x == 0 && tile.step_y == 0) return before;
+  UNROLL_LANE(4)
   for (int c = 0; c < 4; ++c) {
     const int column = source_of(2 * x + c % 2, kTemporalCell, tile.step_x, 2 * tiles_x);
     const int row = source_of(2 * y + c / 2, kTemporalCell, tile.step_y, 2 * tiles_y);
@@ -251,6 +253,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
 
   // Rejection. Where the light has changed, history follows it.
   float flicker = 0.0f;
+  UNROLL_LANE(4)
   for (int c = 0; c < 4; ++c) {
     tile.cells[c] = cell_light(own.cells[c], before.cells[c]);
     flicker += 0.25f * tile.cells[c].flicker;
@@ -267,6 +270,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
     const float4 found = judge_cells(&grid, tile.cells, before.cells, flicker, &own, &around.sum);
     vstore4(select((float4)(0.0f), clamp(found, 0.0f, 1.0f), asked), 0, all_judged);
   }
+  UNROLL_LANE(4)
   for (int c = 0; c < 4; ++c) {
     CellLight* cell = &tile.cells[c];
     const float judged = all_judged[c];
@@ -288,7 +292,8 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
       around.sum.outliers > 0.0f && around.recent_outliers < OUTLIER_REARM_MAX && !relit && !(by_cut > 0.0f);
   if (tile.holds_back) {
     tile.rejection = 0.0f;
-    for (int c = 0; c < 4; ++c) {
+    UNROLL_LANE(4)
+  for (int c = 0; c < 4; ++c) {
       tile.cells[c] = before.cells[c];
       tile.cells[c].rejection = 0.0f;
     }
