@@ -8,6 +8,8 @@
 //   depth         in      R32F, viewport
 //   tiles         in      TileReprojection of each tile
 //   layers        in      LayerTile of each tile
+//   listed        in      the tiles that are layered, in any order; other VIEWs look at all
+//   total         in      TotalLight: how many those are
 //   history       in      the far layer
 //   near_history  in      the near layer
 //   states        in      LayerState of each texel of a layered tile
@@ -20,6 +22,7 @@
 #include "bits.h"
 #include "layers/constants.h"
 #include "layers/past_layers.h"
+#include "layers/tile_runs.h"
 #include "temporal/constants.h"
 #include "temporal/display.h"
 
@@ -135,24 +138,26 @@ static inline LaneTexels sample_near(const PastLayers* known, DEPTH_TEXELS depth
 
 __kernel void display_layers(const TemporalDisplayParams params, const HistorySamples now, DEPTH_TEXELS depth,
                              __global const TileReprojection* tiles, __global const LayerTile* layers,
-                             HISTORY_TEXELS history, HISTORY_TEXELS near_history, __global const half* states,
-                             OUTPUT_TEXELS output) {
-  const int y = get_global_id(1);
-  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
-  if (item.first >= item.end || y >= params.output_height) return;
-
+                             __global const int* listed, __global const TotalLight* total, HISTORY_TEXELS history,
+                             HISTORY_TEXELS near_history, __global const half* states, OUTPUT_TEXELS output) {
+  const int all = params.tiles_x * ((params.output_height + kTemporalTile - 1) / kTemporalTile);
+  const int end = (VIEW == PICTURE ? total->layered : all) * kRunsOfTile;
   const PastLayers known =
       past_layers(params.output_width, params.output_height, now, history, 0, near_history, states, tiles, layers);
-  for (int x = item.first; x < item.end; x += item.step) {
-    const LayerTile layer = layers[y / kTemporalTile * params.tiles_x + x / kTemporalTile];
+  for (int run = first_run(); run < end; run = next_run(run)) {
+    const int tile = VIEW == PICTURE ? listed[run / kRunsOfTile] : run / kRunsOfTile;
+    const LayerTile layer = layers[tile];
     if (VIEW == PICTURE && !layer.is_split) continue;
+    const int2 pixel = pixel_of_run(run, tile, params.tiles_x);
+    const int x = pixel.x, y = pixel.y;
+    if (x >= params.output_width || y >= params.output_height) continue;
     const LaneFloat confidence = confidences(load_pixels_of(&known, known.far, x, y));
     const bool any_split = layer.is_split && any_lane(as_lane_int(confidence) < 0);
     if (VIEW == PICTURE && !any_split) continue;
     const Display display = display_of(layer.phase_x, layer.phase_y);
     LaneTexels near = no_texels();
     if (any_split) near = sample_near(&known, depth, layer.between, display, x, y);
-    const int index = texel_index(params.output, x, y), count = pixels_from(item, x);
+    const int index = texel_index(params.output, x, y), count = min(params.output_width - x, (int)kLanes);
     const LaneTexels known_near = select_texels(no_texels(), near, as_lane_int(confidence) < 0);
     const LaneTexels far = load_pixels(output, index, count);
     stream_output_lanes(output, params.output, x, y, count, shown_of(far, known_near, confidence));

@@ -22,6 +22,8 @@
 //   previous_layers    in   LayerTile of each tile, of the previous frame
 //   tiles, layers      in   the same of this frame
 //   light              in   TileLight of each tile, of this frame
+//   listed             in   the tiles that are layered, in any order
+//   total              in   TotalLight: how many those are
 //   updated            out  the far layer of this frame
 //   updated_alpha      out  ALPHA 1: its alpha
 //   updated_near       out  its near layer
@@ -38,6 +40,7 @@
 #error "ALPHA must be 0 or 1"
 #endif
 
+#include "layers/tile_runs.h"
 #include "layers/update_layers.h"
 
 __kernel void resolve_layers(const TemporalParams params, const HistorySamples before, const TexelLayout depth_layout,
@@ -47,23 +50,22 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
                              HISTORY_TEXELS near_history, __global const half* states,
                              __global const TileReprojection* previous_tiles, __global const LayerTile* previous_layers,
                              __global const TileReprojection* tiles, __global const LayerTile* layers,
-                             __global const TileLight* light, STORED_HISTORY updated, STORED_HISTORY updated_alpha,
+                             __global const TileLight* light, __global const int* listed,
+                             __global const TotalLight* total, STORED_HISTORY updated, STORED_HISTORY updated_alpha,
                              STORED_HISTORY updated_near, __global half* updated_states, __global uint* non_finite) {
-  const int y = get_global_id(1);
-  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
-  if (item.first >= item.end || y >= params.output_height) return;
-
+  const int end = total->layered * kRunsOfTile;
   const SourceFrame frame = params.frame0;
   const PastLayers past = past_layers(params.output_width, params.output_height, before, history, alpha, near_history,
                                       states, previous_tiles, previous_layers);
   const SampleMotion sample_motion = {reprojection, params.reprojection, params.motion_x, params.motion_y};
-  const Positions row = row_position(&params, positions, y);
   uint met_count = 0;
-  for (int x = item.first; x < item.end; x += item.step) {
-    const int count = pixels_from(item, x);
-    const int tile_index = y / kTemporalTile * params.tiles_x + x / kTemporalTile;
+  for (int run = first_run(); run < end; run = next_run(run)) {
+    const int tile_index = listed[run / kRunsOfTile];
+    const int2 pixel = pixel_of_run(run, tile_index, params.tiles_x);
+    const int x = pixel.x, y = pixel.y, count = min(params.output_width - x, (int)kLanes);
+    if (count < 1 || y >= params.output_height) continue;
     const LayerTile layer = layers[tile_index];
-    if (!layer.is_layered) continue;
+    const Positions row = row_position(&params, positions, y);
     TileReprojection tile = tiles[tile_index];
 
     // The far layers, or the only ones.

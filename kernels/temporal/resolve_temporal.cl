@@ -151,11 +151,11 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
                                __global const TileLight* light, __global const LayerTile* layers,
                                STORED_HISTORY updated, STORED_HISTORY updated_alpha, OUTPUT_TEXELS view,
                                __global uint* non_finite) {
-  const int first_y = get_global_id(1) * params.rows_per_item;
+  const int first_y = get_global_id(1) * kTemporalTile;
   const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
   if (item.first >= item.end || first_y >= params.output_height) return;
 
-  const int end_y = min(first_y + params.rows_per_item, params.output_height);
+  const int end_y = min(first_y + kTemporalTile, params.output_height);
   const SourceFrame frame = params.frame0;
   const HistoryLayer layer = {history, params.output_width, params.output_height};
   const SampleMotion sample_motion = {reprojection, params.reprojection, params.motion_x, params.motion_y};

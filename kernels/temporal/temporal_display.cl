@@ -128,12 +128,12 @@ static inline void store_pixels(OUTPUT_TEXELS output, TexelLayout layout, int x,
 
 __kernel void temporal_display(const TemporalDisplayParams params, __global const TileReprojection* tiles,
                                HISTORY_TEXELS history, HISTORY_TEXELS alpha, OUTPUT_TEXELS output) {
-  const int first_y = get_global_id(1) * params.rows_per_item;
+  const int first_y = get_global_id(1) * kTemporalTile;
   const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
   if (item.first >= item.end || first_y >= params.output_height) return;
 
   const HistoryLayer layer = {history, params.output_width, params.output_height};
-  const int end_y = min(first_y + params.rows_per_item, params.output_height);
+  const int end_y = min(first_y + kTemporalTile, params.output_height);
   for (int x = item.first; x < item.end; x += item.step) {
     const int count = pixels_from(item, x);
     const TileReprojection tile = tiles[first_y / kTemporalTile * params.tiles_x + x / kTemporalTile];

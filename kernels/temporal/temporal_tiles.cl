@@ -16,6 +16,7 @@
 //   marks           in   LAYERS 1: of each tile, not 0 if a sample in it is split
 //   previous_layers in   LAYERS 1: LayerTile of each tile, of the previous frame
 //   layers          out  LAYERS 1: the same of this frame
+//   listed          out  LAYERS 1: the tiles that are layered, in any order
 //   tiles           out  TileReprojection of each tile
 //   evidence        out  TileEvidence of each tile
 //   total           out  TotalLight: grows by each tile's part
@@ -187,12 +188,12 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
                              HISTORY_TEXELS history, __global const TileReprojection* previous_tiles,
                              DEPTH_TEXELS depth, TexelLayout depth_layout, __global const LayerSplit* splits,
                              __global const int* marks, __global const LayerTile* previous_layers,
-                             __global LayerTile* layers, __global TileReprojection* tiles,
+                             __global LayerTile* layers, __global int* listed, __global TileReprojection* tiles,
                              __global TileEvidence* evidence, __global TotalLight* total) {
   const int first = get_global_id(0), tile_y = get_global_id(1);
   if (first >= params.tiles_x || tile_y >= params.tiles_y) return;
 
-  TotalLight sum = {0, 0, 0, 0, 0, 0};
+  TotalLight sum = {0, 0, 0, 0, 0, 0, 0};
   for (int tile_x = first; tile_x < params.tiles_x; tile_x += (int)get_global_size(0)) {
     const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
     const SampleRange samples = samples_in_tile(&params, corner);
@@ -209,6 +210,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
     const LayerTile own = layer_tile(&params, depth, &in, samples, found, (int2)(tile_x, tile_y), corner,
                                      previous_tiles, &tile, &hidden);
     layers[i] = own;
+    if (own.is_layered) listed[atomic_inc(&total->layered)] = i;
     is_split = own.is_split;
 #endif
     const HistoryLayer known = {history, params.output_width, params.output_height};

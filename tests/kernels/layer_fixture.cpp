@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 
 namespace quincunx::testing {
 namespace {
@@ -323,6 +324,18 @@ std::vector<LayerTile> to_kernel(const std::vector<reference::LayerTile>& tiles)
   return made;
 }
 
+// The layered tiles, the last first, and how many they are.
+std::pair<cl::Buffer, cl::Buffer> list_layered(const std::vector<reference::LayerTile>& tiles) {
+  std::vector<cl_int> listed;
+  for (std::size_t i = tiles.size(); i-- > 0;) {
+    if (tiles[i].is_layered) listed.push_back(static_cast<cl_int>(i));
+  }
+  TotalLight total{};
+  total.layered = static_cast<int>(listed.size());
+  listed.resize(tiles.size());
+  return {to_device(listed), to_device(std::vector<TotalLight>{total})};
+}
+
 LayerStages::LayerStages(const StageVariant& variant, TemporalPreset preset)
     : variant_(variant),
       stages_(variant),
@@ -347,6 +360,7 @@ LayerStages::Resolved LayerStages::run_resolve(Rig& rig, const LayerStageInputs&
   const cl::Buffer tiles = to_device(reprojections_of(r.tiles));
   const cl::Buffer layers = to_device(to_kernel(r.layers));
   const cl::Buffer light = to_device(lights_of(r.tiles));
+  const auto [listed, total] = list_layered(r.layers);
   const std::size_t bytes = texels * bytes_per_pixel(variant_.history);
   const std::size_t state_bytes = texels * bytes_per_pixel(PixelFormat::kRGBA16F);
   const cl::Buffer updated = to_device(std::vector<unsigned char>(bytes, 0x7f));
@@ -369,6 +383,8 @@ LayerStages::Resolved LayerStages::run_resolve(Rig& rig, const LayerStageInputs&
                 {Resource::kTileReprojection, view_of(tiles)},
                 {Resource::kLayerTiles, view_of(layers)},
                 {Resource::kTileLight, view_of(light)},
+                {Resource::kLayeredTiles, view_of(listed)},
+                {Resource::kTotalLight, view_of(total)},
                 {Resource::kHistory, view_of(updated)},
                 {Resource::kHistoryAlpha, view_of(updated_alpha)},
                 {Resource::kNearHistory, view_of(updated_near)},
@@ -383,6 +399,7 @@ std::vector<Pixel> LayerStages::run_display(Rig& rig, const LayerStageInputs& in
   const Extent output{shown.width, shown.height};
   const cl::Buffer tiles = to_device(reprojections_of(shown.tiles));
   const cl::Buffer layers = to_device(to_kernel(shown.layers));
+  const auto [listed, total] = list_layered(shown.layers);
   const cl::Buffer far = to_device(encode(variant_.history, shown.far));
   const cl::Buffer near = to_device(encode(variant_.history, shown.near));
   const cl::Buffer states = states_to_device(shown.states);
@@ -390,6 +407,8 @@ std::vector<Pixel> LayerStages::run_display(Rig& rig, const LayerStageInputs& in
   display_.run(in.previous, in.previous, output, rig.counter(),
                {{Resource::kTileReprojection, view_of(tiles)},
                 {Resource::kLayerTiles, view_of(layers)},
+                {Resource::kLayeredTiles, view_of(listed)},
+                {Resource::kTotalLight, view_of(total)},
                 {Resource::kHistory, view_of(far)},
                 {Resource::kNearHistory, view_of(near)},
                 {Resource::kLayerStates, view_of(states)},

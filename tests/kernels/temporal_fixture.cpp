@@ -251,14 +251,20 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   tiles.setArg(8, marks);
   tiles.setArg(9, layers_before);
   tiles.setArg(10, layers);
-  tiles.setArg(11, now);
-  tiles.setArg(12, evidence);
-  tiles.setArg(13, total);
+  const cl::Buffer listed = to_device(std::vector<cl_int>(r.before.size()));
+  tiles.setArg(11, listed);
+  tiles.setArg(12, now);
+  tiles.setArg(13, evidence);
+  tiles.setArg(14, total);
   enqueue_rows(impl().profile.shape, impl().queue, tiles, count,
                columns_per_item(impl().profile.shape, count.width, 1), nullptr);
   const auto reprojections = from_device<TileReprojection>(now, r.before.size());
   const auto found = from_device<TileEvidence>(evidence, r.before.size());
-  Tiles made{{}, from_device<LayerTile>(layers, r.before.size()), from_device<TotalLight>(total, 1).front()};
+  Tiles made{{},
+             from_device<LayerTile>(layers, r.before.size()),
+             from_device<cl_int>(listed, r.before.size()),
+             from_device<TotalLight>(total, 1).front()};
+  made.listed.resize(static_cast<std::size_t>(made.total.layered));
   for (std::size_t i = 0; i < found.size(); ++i)
     made.tiles.push_back({reprojections[i], found[i], {}});
   return made;
@@ -309,7 +315,6 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   params.columns = position_columns(output);
   params.counter = counter.index;
   params.columns_per_item = columns_per_item(impl().profile.shape, output.width, 1);
-  params.rows_per_item = rows_per_item(impl().profile.shape);
   params.motion_x = to_float(r.reprojection_scale(0));
   params.motion_y = to_float(r.reprojection_scale(1));
   params.spacing_x = to_float(r.spacing(0));
@@ -345,7 +350,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   set_memory(resolve, 14, view.memory);
   set_memory(resolve, 15, counter.memory);
   enqueue_rows(impl().profile.shape, impl().queue, resolve, output, params.columns_per_item, nullptr,
-               params.rows_per_item);
+               kTemporalTile);
   Result result{from_device<unsigned char>(updated, bytes), {}, {}, rig.count(counter)};
   result.pixels = decode(variant_.history, result.bytes);
   if (!variant_.alpha) return result;
@@ -367,7 +372,6 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   params.output = layout_of(view);
   params.tiles_x = r.tiles_x();
   params.columns_per_item = columns_per_item(impl().profile.shape, output.width, 1);
-  params.rows_per_item = rows_per_item(impl().profile.shape);
   params.first = shown.first ? 1 : 0;
   cl::Kernel display = kernel("temporal_display", spec_of(facts(shown.preset), "temporal_display").options);
   display.setArg(0, params);
@@ -379,7 +383,7 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   display.setArg(3, known_alpha);
   set_memory(display, 4, view.memory);
   enqueue_rows(impl().profile.shape, impl().queue, display, output, params.columns_per_item, nullptr,
-               params.rows_per_item);
+               kTemporalTile);
   Result result{rig.bytes(view, output), {}, {}, 0};
   result.pixels = decode(variant_.resolved, result.bytes);
   return result;

@@ -100,6 +100,7 @@ class TemporalStages {
   struct Tiles {
     std::vector<KernelTile> tiles;  // but for TileLight
     std::vector<LayerTile> layers;
+    std::vector<cl_int> listed;  // those that are layered
     TotalLight total;
   };
   Tiles run_tiles(const StageInputs& in) const;

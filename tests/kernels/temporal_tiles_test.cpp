@@ -87,6 +87,15 @@ class TemporalTiles : public ::testing::TestWithParam<StageVariant> {
     }
   }
 
+  static void expect_layered_ones_listed(const TemporalStages::Tiles& actual, const std::string& what) {
+    std::vector<cl_int> layered, listed = actual.listed;
+    for (std::size_t i = 0; i < actual.layers.size(); ++i) {
+      if (actual.layers[i].is_layered != 0) layered.push_back(static_cast<cl_int>(i));
+    }
+    std::sort(listed.begin(), listed.end());
+    ASSERT_EQ(layered, listed) << what;
+  }
+
   void compare_layers(const ExpectedTile& expected, const LayerTile& actual, const std::string& what) {
     if (expected.tile.undecided) return;
     const reference::LayerTile& tile = expected.tile.value.layers;
@@ -169,6 +178,8 @@ TEST_P(TemporalTiles, MatchTheReferenceAtEverySizeAndScale) {
       add_tile(total, allowed, expected);
       undecided = undecided || expected.tile.undecided || expected.evidence.undecided;
     }
+    expect_layered_ones_listed(actual, name_of(spec));
+    if (HasFatalFailure()) return;
     if (undecided) continue;
     ++totals;
     ASSERT_NEAR(total.brightening, actual.total.brightening, allowed.sum) << name_of(spec);

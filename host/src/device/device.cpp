@@ -104,6 +104,7 @@ Status learn(Device::Impl& impl) {
   if (Status status = choose_lanes(impl); !status.ok()) return status;
   impl.info.two_channel_images =
       impl.info.images && lists_format(impl.context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
+  impl.limits_registers = has_extension(impl.device, "cl_nv_compiler_options");
   impl.keeps_programs = keeps_programs(impl.info);
   impl.timer = validated_timer(impl);
   impl.profile = find_profile(impl);

@@ -32,6 +32,8 @@ struct Device::Impl {
   PassTimer timer = PassTimer::kNone;
   DeviceProfile profile;
   int lanes = 1;  // pixels that a work-item makes at once: 8 or 1 (kernels/include/lanes.h)
+  bool limits_registers =
+      false;  // cl_nv_compiler_options: the compiler takes a limit of a work-item's registers
   // The driver itself keeps what it compiles from one run to the next, so the program cache leaves kernels to it.
   bool keeps_programs = false;
   std::shared_ptr<BuiltPrograms> built = std::make_shared<BuiltPrograms>();

@@ -86,7 +86,6 @@ TemporalParams temporal_params(const PassFrame& frame, const WorkShape& shape, c
           .columns = position_columns(output),
           .counter = frame.counter.index,
           .columns_per_item = columns_per_item(shape, output.width, 1),
-          .rows_per_item = rows_per_item(shape),
           .motion_x = motion.x,
           .motion_y = motion.y,
           .spacing_x = spacing.x,
@@ -96,10 +95,6 @@ TemporalParams temporal_params(const PassFrame& frame, const WorkShape& shape, c
           .parity = shaded_parity(facts, frame.inputs)};
 }
 
-int rows_per_item(const WorkShape& shape) {
-  return shape.pixels_per_item == 0 ? kTemporalTile : 1;
-}
-
 TemporalDisplayParams temporal_display_params(const PassFrame& frame, const WorkShape& shape,
                                               Resource picture) {
   return {.output_width = frame.output.width,
@@ -107,7 +102,6 @@ TemporalDisplayParams temporal_display_params(const PassFrame& frame, const Work
           .output = layout_of(frame[picture]),
           .tiles_x = extent_of(Area::kTiles, frame.extents()).width,
           .columns_per_item = columns_per_item(shape, frame.output.width, 1),
-          .rows_per_item = rows_per_item(shape),
           .first = frame.has_history ? 0 : 1};
 }
 

@@ -43,10 +43,6 @@ int shaded_parity(const PlanFacts& facts, const FrameInputs& inputs);
 // Returns those of resolve_temporal and resolve_layers, without reactive values and a view.
 TemporalParams temporal_params(const PassFrame& frame, const WorkShape& shape, const PlanFacts& facts);
 
-// Returns how many rows a work-item of resolve_temporal and temporal_display makes: those of a tile where it makes
-// whole rows, because what they share is found once, else 1.
-int rows_per_item(const WorkShape& shape);
-
 // `picture`: where it goes.
 TemporalDisplayParams temporal_display_params(const PassFrame& frame, const WorkShape& shape,
                                               Resource picture);

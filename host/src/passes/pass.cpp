@@ -14,14 +14,20 @@ int round_up(int value, int step) {
   return (value + step - 1) / step * step;
 }
 
+std::string options_of(const PassSpec& spec, const Device::Impl& device) {
+  if (spec.registers == 0 || !device.limits_registers) return spec.options;
+  return fmt::format("{} -cl-nv-maxrregcount={}", spec.options, spec.registers);
+}
+
 }  // namespace
 
 Pass::Pass(const PassSetup& setup, const PassSpec& spec)
     : facts_(setup.facts),
       spec_(spec),
-      kernel_(build_kernel(setup.device, spec.kernel, spec.options)),
+      kernel_(build_kernel(setup.device, spec.kernel, options_of(spec, setup.device))),
       shape_(with_smaller_group(setup.device.profile.shape_of(spec.kernel),
-                                kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(setup.device.device))) {
+                                kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(setup.device.device))),
+      items_at_once_(setup.device.info.compute_units * (setup.device.lanes == 1 ? 2048 : 16)) {
   for (const Use& use : spec_.uses)
     uses_[index_of(use.resource)] = true;
   stand_ins_[0] = setup.tables.stand_in(Storage::kBuffer);
@@ -71,7 +77,8 @@ void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory) {
 void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const cl::Kernel& kernel,
                   Extent extent, int columns, cl::Event* event, int rows) {
   const int group_x = shape.group_width;
-  const int group_y = std::max(shape.group_height / rows, 1);
+  const int group_y =
+      shape.pixels_per_item == 0 ? std::max(shape.group_height / rows, 1) : shape.group_height;
   const int items_x = (extent.width + columns - 1) / columns;
   const int items_y = (extent.height + rows - 1) / rows;
   queue.enqueueNDRangeKernel(
@@ -79,6 +86,13 @@ void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const c
       cl::NDRange(static_cast<std::size_t>(round_up(items_x, group_x)),
                   static_cast<std::size_t>(round_up(items_y, group_y))),
       cl::NDRange(static_cast<std::size_t>(group_x), static_cast<std::size_t>(group_y)), nullptr, event);
+}
+
+void Pass::launch_over_list(const PassFrame& frame, cl::Event* event) {
+  const int group = shape_.group_width * shape_.group_height;
+  frame.queue.enqueueNDRangeKernel(kernel_, cl::NullRange,
+                                   cl::NDRange(static_cast<std::size_t>(round_up(items_at_once_, group))),
+                                   cl::NDRange(static_cast<std::size_t>(group)), nullptr, event);
 }
 
 TexelLayout layout_of(const ImageView& view) {

@@ -78,7 +78,7 @@ struct PassFrame {
 void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory);
 
 // Enqueues enough work-items of `columns` x `rows` pixels for the extent, in groups of one fixed size: a device
-// compiles a kernel anew for each size. Groups hold fewer items where these have more rows.
+// compiles a kernel anew for each size. Where items make whole rows, groups hold fewer of more rows.
 void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const cl::Kernel& kernel,
                   Extent extent, int columns, cl::Event* event, int rows = 1);
 
@@ -112,6 +112,10 @@ class Pass {
     enqueue_rows(shape_, frame.queue, kernel_, extent, columns, event, rows);
   }
 
+  // Enqueues as many work-items as the device has at work at once. They share the tiles of a list among them, whose
+  // length only the device knows (layers/tile_runs.h).
+  void launch_over_list(const PassFrame& frame, cl::Event* event);
+
   // Sets the kernel's arguments in order: structs by value, buffers, the memory of resources, images and counters. A
   // resource that the variant does not use gets memory that stands for it.
   template <typename... Arguments>
@@ -140,6 +144,7 @@ class Pass {
   std::array<cl::Memory, 2> stand_ins_;  // a buffer, and an image where inputs are images
   cl::Kernel kernel_;
   WorkShape shape_;
+  int items_at_once_;
 };
 
 // A pass's `make`.

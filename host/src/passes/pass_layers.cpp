@@ -167,9 +167,10 @@ class ResolveLayersPass : public Pass {
          Resource::kDepth, Resource::kPreviousDepth, Resource::kOpenTrust, Resource::kSplits,
          Resource::kPreviousHistory, Resource::kPreviousHistoryAlpha, Resource::kPreviousNearHistory,
          Resource::kPreviousLayerStates, Resource::kPreviousTileReprojection, Resource::kPreviousLayerTiles,
-         Resource::kTileReprojection, Resource::kLayerTiles, Resource::kTileLight, Resource::kHistory,
-         Resource::kHistoryAlpha, Resource::kNearHistory, Resource::kLayerStates, frame.counter);
-    launch(frame, frame.output, params.columns_per_item, event);
+         Resource::kTileReprojection, Resource::kLayerTiles, Resource::kTileLight, Resource::kLayeredTiles,
+         Resource::kTotalLight, Resource::kHistory, Resource::kHistoryAlpha, Resource::kNearHistory,
+         Resource::kLayerStates, frame.counter);
+    launch_over_list(frame, event);
   }
 };
 
@@ -188,10 +189,12 @@ void plan_resolve_layers(const PlanFacts& facts, PassList& list) {
                      Resource::kOpenTrust, Resource::kSplits, Resource::kPreviousHistory,
                      Resource::kPreviousNearHistory, Resource::kPreviousLayerStates,
                      Resource::kPreviousTileReprojection, Resource::kPreviousLayerTiles,
-                     Resource::kTileReprojection, Resource::kLayerTiles, Resource::kTileLight},
+                     Resource::kTileReprojection, Resource::kLayerTiles, Resource::kTileLight,
+                     Resource::kLayeredTiles, Resource::kTotalLight},
            .writes = {Resource::kHistory, Resource::kNearHistory, Resource::kLayerStates}}),
       .make = make_pass<ResolveLayersPass>,
-      .frames = Frames::kSparse};
+      .frames = Frames::kSparse,
+      .registers = 128};
   spec.add_where(facts.accumulates_alpha(), "ALPHA", settings,
                  {.reads = {Resource::kPreviousHistoryAlpha}, .writes = {Resource::kHistoryAlpha}});
   spec.add_options(fmt::format("{} -D HISTORY_FORMAT={}", colour_options(settings), precision_of(history)));
@@ -225,8 +228,9 @@ class DisplayLayersPass : public Pass {
     const HistorySamples now =
         history_samples(frame.inputs, frame.output, layout_of(frame[Resource::kDepth]));
     bind(frame, params, now, Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
-         Resource::kHistory, Resource::kNearHistory, Resource::kLayerStates, shown);
-    launch(frame, frame.output, params.columns_per_item, event);
+         Resource::kLayeredTiles, Resource::kTotalLight, Resource::kHistory, Resource::kNearHistory,
+         Resource::kLayerStates, shown);
+    launch_over_list(frame, event);
   }
 };
 
@@ -243,7 +247,8 @@ void plan_display_layers(const PlanFacts& facts, PassList& list) {
        .reason = "the second layer: the near one laid over the picture",
        .uses =
            uses_of(settings, {.reads = {Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
-                                        Resource::kHistory, Resource::kNearHistory, Resource::kLayerStates},
+                                        Resource::kLayeredTiles, Resource::kTotalLight, Resource::kHistory,
+                                        Resource::kNearHistory, Resource::kLayerStates},
                               .writes = {centred_of(facts)}}),
        .make = make_pass<DisplayLayersPass>,
        .frames = Frames::kSparse});

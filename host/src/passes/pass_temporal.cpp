@@ -43,7 +43,8 @@ class TemporalTilesPass : public Pass {
     bind(frame, params, Resource::kColour, Resource::kReprojection, Resource::kPreviousHistory,
          Resource::kPreviousTileReprojection, Resource::kDepth, layout_of(frame[Resource::kDepth]),
          Resource::kSplits, Resource::kSplitMarks, Resource::kPreviousLayerTiles, Resource::kLayerTiles,
-         Resource::kTileReprojection, Resource::kTileEvidence, Resource::kTotalLight);
+         Resource::kLayeredTiles, Resource::kTileReprojection, Resource::kTileEvidence,
+         Resource::kTotalLight);
     launch(frame, tiles, columns_per_item(shape(), tiles.width, 1), event);
   }
 };
@@ -65,7 +66,7 @@ void plan_temporal_tiles(const PlanFacts& facts, PassList& list) {
   spec.add_where(
       facts.has_layers(), "LAYERS", settings,
       {.reads = {Resource::kDepth, Resource::kSplits, Resource::kSplitMarks, Resource::kPreviousLayerTiles},
-       .writes = {Resource::kLayerTiles}});
+       .writes = {Resource::kLayerTiles, Resource::kLayeredTiles}});
   spec.add_options(fmt::format("{} -D HISTORY_FORMAT={}", colour_options(settings),
                                precision_of(settings.temporal.history)));
   list.passes.push_back(std::move(spec));
@@ -142,7 +143,7 @@ class ResolveTemporalPass : public Pass {
          Resource::kPreviousHistory, Resource::kPreviousHistoryAlpha, Resource::kPreviousTileReprojection,
          Resource::kTileReprojection, Resource::kTileLight, Resource::kLayerTiles, Resource::kHistory,
          Resource::kHistoryAlpha, shown, frame.counter);
-    launch(frame, frame.output, params.columns_per_item, event, params.rows_per_item);
+    launch(frame, frame.output, params.columns_per_item, event, kTemporalTile);
   }
 };
 
@@ -172,7 +173,8 @@ void plan_resolve_temporal(const PlanFacts& facts, PassList& list) {
                                                      Resource::kTileReprojection, Resource::kTileLight},
                                            .writes = {Resource::kHistory}}),
                 .make = make_pass<ResolveTemporalPass>,
-                .frames = Frames::kSparse};
+                .frames = Frames::kSparse,
+                .registers = 64};
   spec.add_where(facts.accumulates_alpha(), "ALPHA", settings,
                  {.reads = {Resource::kPreviousHistoryAlpha}, .writes = {Resource::kHistoryAlpha}});
   spec.add_where(facts.reprojects(), "MOTION", settings, {.reads = {Resource::kReprojection}});
@@ -206,7 +208,7 @@ class TemporalDisplayPass : public Pass {
     TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
     bind(frame, params, merged ? Resource::kCentredTiles : Resource::kTileReprojection, history,
          merged ? Resource::kMergedAlpha : Resource::kHistoryAlpha, shown);
-    launch(frame, frame.output, params.columns_per_item, event, params.rows_per_item);
+    launch(frame, frame.output, params.columns_per_item, event, kTemporalTile);
   }
 };
 

@@ -109,6 +109,9 @@ struct PassSpec {
   MakePass make = nullptr;
   Frames frames = Frames::kAll;
   Viewports viewports = Viewports::kAll;
+  // A work-item's at most, where the driver takes such a limit: fewer of them, and more items at work at once, are
+  // faster (docs/lab/devices.md). 0: as many as the compiler likes.
+  int registers = 0;
 
   // Adds the option "-D NAME=1" and these uses where they are wanted; else "-D NAME=0" alone, and the pass binds
   // stand-ins for them.

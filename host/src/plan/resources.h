@@ -75,6 +75,7 @@ enum class Resource : std::uint8_t {
   kSplitMarks,
   kLayerTiles,
   kPreviousLayerTiles,
+  kLayeredTiles,
   kNearHistory,
   kPreviousNearHistory,
   kLayerStates,

@@ -34,14 +34,13 @@ typedef struct TemporalParams {
   int columns;                 // in the position table, as in ReprojectedParams
   int counter;                 // index into non_finite
   int columns_per_item;        // pixels that a work-item makes, at least
-  int rows_per_item;           // in resolve_temporal: 1 or kTemporalTile
   float motion_x, motion_y;    // from Reprojection's pixels of the previous viewport to output pixels
   float spacing_x, spacing_y;  // output pixels between neighbouring samples
   int tiles_x;
   int tiles_y;
   int parity;  // on a checkerboard sample (x, y) is shaded where (x + y) % 2 is this; -1: all are
 } TemporalParams;
-QUINCUNX_CHECK_SIZE(TemporalParams, 8 + 2 * 32 + 16 + 12 + 16 + 16);
+QUINCUNX_CHECK_SIZE(TemporalParams, 8 + 2 * 32 + 16 + 12 + 12 + 16);
 
 typedef struct TemporalDisplayParams {
   int output_width;
@@ -49,10 +48,9 @@ typedef struct TemporalDisplayParams {
   TexelLayout output;
   int tiles_x;
   int columns_per_item;  // pixels that a work-item makes, at least
-  int rows_per_item;     // in temporal_display: 1 or kTemporalTile
   int first;             // 1: no frame came before
 } TemporalDisplayParams;
-QUINCUNX_CHECK_SIZE(TemporalDisplayParams, 8 + 8 + 16);
+QUINCUNX_CHECK_SIZE(TemporalDisplayParams, 8 + 8 + 12);
 
 typedef struct MergeParams {
   int width;  // extent of the picture

@@ -103,8 +103,9 @@ typedef struct TotalLight {
   int light;
   int history_error, neighbour_error;
   int changed;  // how many tiles have a history_error of more than 3 % of their light
+  int layered;  // how many tiles are layered: the entries of their list
 } TotalLight;
-QUINCUNX_CHECK_SIZE(TotalLight, 24);
+QUINCUNX_CHECK_SIZE(TotalLight, 28);
 enum { kLightUnits = 2048 };
 
 #ifdef __cplusplus
