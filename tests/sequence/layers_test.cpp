@@ -69,12 +69,14 @@ TEST_F(Layers, AChannelNamedYBesideXIsNotGrey) {
                  "has no channel 'R'");
 }
 
-// Y beside RY and BY is the luminance of a colour.
+// Y beside RY and BY is the luminance of a colour. OpenImageIO 2.4 shows the three; 2.5 shows R, G and B in their place,
+// and then misses that RY and BY are subsampled.
 TEST_F(Layers, LuminanceOfAColourIsNotGrey) {
   write_channels(input(1), {24, 14}, {"BY", "RY", "Y"});
   const auto result = resolve(fmt::format("'{{}}/f.%04d.exr' --out '{{}}/o/u.%04d.exr' {}", kSame));
   EXPECT_EQ(result.exit_code, 1) << result.err;
-  EXPECT_NE(result.err.find("has no channel 'R'"), std::string::npos) << result.err;
+  const auto says = [&](const char* what) { return result.err.find(what) != std::string::npos; };
+  EXPECT_TRUE(says("f.0001.exr' has no channel 'R'") || says("f.0001.exr' cannot be read")) << result.err;
   EXPECT_FALSE(std::filesystem::exists(folder_.file("o/u.0001.exr")));
 }
 
