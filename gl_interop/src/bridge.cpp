@@ -153,9 +153,8 @@ Result<Device> open_device(const Context& context, const std::string& selector, 
     if (auto device = open_sharing(context, candidates, &why)) return *std::move(device);
   }
   if (interop != Interop::kGl) {
-    const DeviceUuid drawing = gl_device_uuid();
     for (const DeviceInfo& candidate : candidates) {
-      if (candidate.imports_opaque_fds && candidate.uuid == drawing)
+      if (candidate.imports_opaque_fds && candidate.uuid == gl_device_uuid())
         return Device::open(std::to_string(candidate.index));
     }
   }

@@ -232,6 +232,10 @@ int PretendImports::acquired() const {
   return count;
 }
 
+const char* extensions_of_imports() {
+  return state().flaw ? " cl_khr_device_uuid cl_khr_external_memory cl_khr_external_semaphore" : "";
+}
+
 bool tells_of_imports(cl_device_info name, std::size_t room, void* value, std::size_t* bytes_ret,
                       cl_int* code) {
   if (!state().flaw) return false;

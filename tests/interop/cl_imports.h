@@ -29,6 +29,9 @@ class PretendImports {
   int acquired() const;  // memory objects that OpenCL owns now
 };
 
+// The extensions that it lists, each after a space; nothing where no driver is played.
+const char* extensions_of_imports();
+
 // Answers clGetDeviceInfo() where it is about imports; false: it is not.
 bool tells_of_imports(cl_device_info name, std::size_t room, void* value, std::size_t* bytes_ret,
                       cl_int* code);

@@ -345,8 +345,7 @@ cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info name, std
     const cl_uint texels = kImagePitchTexels;
     return copy_out(&texels, sizeof(texels), room, value, bytes_ret);
   }
-  if (name != CL_DEVICE_EXTENSIONS || !(state().sharing || state().images_on_buffers))
-    return real(device, name, room, value, bytes_ret);
+  if (name != CL_DEVICE_EXTENSIONS) return real(device, name, room, value, bytes_ret);
   std::size_t bytes = 0;
   if (const cl_int code = real(device, name, 0, nullptr, &bytes); code != CL_SUCCESS) return code;
   std::string all(bytes, '\0');
@@ -358,6 +357,7 @@ cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info name, std
     if (state().gl_event) all += " cl_khr_gl_event";
   }
   if (state().images_on_buffers) all += " cl_khr_image2d_from_buffer";
+  all += extensions_of_imports();
   return copy_out(all.c_str(), all.size() + 1, room, value, bytes_ret);
 }
 

@@ -37,11 +37,6 @@ std::string trimmed(std::string text) {
   return {first, text.end()};
 }
 
-bool has_extension(const cl::Device& device, const std::string& extension) {
-  const std::string all = fmt::format(" {} ", device.getInfo<CL_DEVICE_EXTENSIONS>());
-  return all.find(fmt::format(" {} ", extension)) != std::string::npos;
-}
-
 int image_pitch_texels(const cl::Device& device) {
   cl_uint texels = 0;
   const bool known = has_extension(device, "cl_khr_image2d_from_buffer") &&
@@ -70,7 +65,7 @@ DeviceInfo info_of(const cl::Device& device) {
   info.host_unified_memory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != 0;
   info.image_pitch_texels = info.images ? image_pitch_texels(device) : 0;
   info.gl_sharing = has_extension(device, "cl_khr_gl_sharing");
-  learn_imports(device(), info);
+  learn_imports(device, info);
   return info;
 }
 
@@ -300,6 +295,11 @@ void repack(const std::byte* from, std::size_t from_row, std::size_t from_texel,
 }
 
 }  // namespace
+
+bool has_extension(const cl::Device& device, const std::string& extension) {
+  const std::string all = fmt::format(" {} ", device.getInfo<CL_DEVICE_EXTENSIONS>());
+  return all.find(fmt::format(" {} ", extension)) != std::string::npos;
+}
 
 FrontKey front_key(const DeviceInfo& device, const std::string& scene) {
   return {.device = device.platform + " " + device.name, .driver = device.driver, .scene = scene};

@@ -49,8 +49,10 @@ struct Device::Impl {
 // a device, and elsewhere a part of a name.
 std::optional<std::size_t> choose_device(const std::string& selector, const std::vector<DeviceInfo>& infos);
 
+bool has_extension(const cl::Device& device, const std::string& extension);
+
 // Finds out which handles of other APIs the device takes, and its UUID.
-void learn_imports(cl_device_id device, DeviceInfo& info);
+void learn_imports(const cl::Device& device, DeviceInfo& info);
 
 // ---- Device profiles as JSON: the tuned ones of cache_folder(), the shipped ones of host/profiles.
 

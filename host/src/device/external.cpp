@@ -124,12 +124,16 @@ cl::Buffer import_fd(const Device::Impl& device, const ExternalMemory& external,
 
 }  // namespace
 
-void learn_imports(cl_device_id device, DeviceInfo& info) {
-  if (clGetDeviceInfo(device, kUuid, info.uuid.size(), info.uuid.data(), nullptr) != CL_SUCCESS)
+void learn_imports(const cl::Device& device, DeviceInfo& info) {
+  if (has_extension(device, "cl_khr_device_uuid") &&
+      clGetDeviceInfo(device(), kUuid, info.uuid.size(), info.uuid.data(), nullptr) != CL_SUCCESS)
     info.uuid = {};
-  info.imports_opaque_fds = lists(device, kMemoryImports, kMemoryFd);
-  info.imports_dma_bufs = lists(device, kMemoryImports, kMemoryDmaBuf);
-  info.imports_semaphores = lists(device, kSemaphoreImports, kSemaphoreFd);
+  if (has_extension(device, "cl_khr_external_memory")) {
+    info.imports_opaque_fds = lists(device(), kMemoryImports, kMemoryFd);
+    info.imports_dma_bufs = lists(device(), kMemoryImports, kMemoryDmaBuf);
+  }
+  if (has_extension(device, "cl_khr_external_semaphore"))
+    info.imports_semaphores = lists(device(), kSemaphoreImports, kSemaphoreFd);
 }
 
 struct SharedMemory::Impl {
