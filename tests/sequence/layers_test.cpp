@@ -69,8 +69,8 @@ TEST_F(Layers, AChannelNamedYBesideXIsNotGrey) {
                  "has no channel 'R'");
 }
 
-// Y beside RY and BY is the luminance of a colour. OpenImageIO 2.4 shows the three; 2.5 shows R, G and B in their place,
-// and then misses that RY and BY are subsampled.
+// Y beside RY and BY is the luminance of a colour. OpenImageIO 2.4 shows the three. 2.5 shows R, G and B in their
+// place, and then misses that RY and BY are subsampled.
 TEST_F(Layers, LuminanceOfAColourIsNotGrey) {
   write_channels(input(1), {24, 14}, {"BY", "RY", "Y"});
   const auto result = resolve(fmt::format("'{{}}/f.%04d.exr' --out '{{}}/o/u.%04d.exr' {}", kSame));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How work-items share the tiles of a list among them. A *run* is as many pixels of a row as an item makes at once. On a
-// CPU an item takes all runs of a tile, and then another tile; elsewhere items side by side take runs side by side.
+// How work-items share the tiles of a list among them. A *run* is as many pixels of a row as an item makes at once.
+// With eight lanes an item takes all runs of a tile, and then another tile. With one, items side by side take runs side
+// by side.
 #pragma once
 
 #include "lanes.h"
