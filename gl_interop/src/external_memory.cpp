@@ -17,13 +17,6 @@ namespace {
 
 constexpr std::size_t kPageBytes = 4096;
 
-std::string text_of(const DeviceUuid& uuid) {
-  std::string text;
-  for (const std::uint8_t byte : uuid)
-    text += fmt::format("{:02x}", byte);
-  return text;
-}
-
 // Waits for a command that may hang for ever.
 void wait_for(const ClEvent& event, std::chrono::milliseconds limit) {
   const auto end = std::chrono::steady_clock::now() + limit;
@@ -259,7 +252,7 @@ std::shared_ptr<const Exporter> Exporter::create(const Device& device, bool sema
   }
   if (!made->mapped_ && info.uuid != made->uuid_) {
     throw InteropError(fmt::format("'{}' is the device {}, and OpenGL draws on the device {}", info.name,
-                                   text_of(info.uuid), text_of(made->uuid_)));
+                                   uuid_text(info.uuid), uuid_text(made->uuid_)));
   }
   made->vulkan_ = &VulkanDevice::open(made->uuid_);
   made->semaphores_ = semaphores && info.imports_semaphores && made->vulkan_->has_semaphores() &&

@@ -14,7 +14,7 @@
 
 namespace quincunx::gl {
 
-// Of one immutable texture, which outlives this object. Desktop OpenGL alone.
+// Copies one immutable texture, which outlives this object. Desktop OpenGL alone.
 class TexelCopy {
  public:
   enum class Direction { kToBuffer, kToTexture };

@@ -269,7 +269,7 @@ void* CL_API_CALL clGetExtensionFunctionAddressForPlatform(cl_platform_id platfo
                               "clGetExtensionFunctionAddressForPlatform")(platform, name);
 }
 
-// Of OpenCL 3.0: its types are those of cl_ulong here.
+// A function of OpenCL 3.0: its types are those of cl_ulong here.
 cl_mem CL_API_CALL clCreateBufferWithProperties(cl_context context, const cl_ulong* properties,
                                                 cl_mem_flags flags, std::size_t bytes, void* host,
                                                 cl_int* code) {

@@ -78,7 +78,6 @@ bool lists_format(const cl::Context& context, const cl::ImageFormat& wanted) {
   });
 }
 
-// All that follows from the device, the context and the queue.
 // Mesa's compiler takes minutes for vectors of eight, on a CPU as well.
 int usual_lanes(const DeviceInfo& info) {
   return info.kind == DeviceKind::kCpu && info.platform != "rusticl" ? 8 : 1;
@@ -95,6 +94,7 @@ Status choose_lanes(Device::Impl& impl) {
   return {};
 }
 
+// Finds out all that follows from the device, the context and the queue.
 Status learn(Device::Impl& impl) {
   if (Status status = choose_lanes(impl); !status.ok()) return status;
   impl.info.two_channel_images =

@@ -11,7 +11,7 @@
 
 #include "device/device_impl.h"
 
-// Of OpenCL 3.0: null in a program whose loader is older.
+// A function of OpenCL 3.0: null in a program whose loader is older.
 extern "C" cl_mem CL_API_CALL clCreateBufferWithProperties(cl_context, const cl_ulong*, cl_mem_flags, size_t,
                                                            void*, cl_int*) __attribute__((weak));
 
@@ -52,13 +52,6 @@ bool lists(cl_device_id device, cl_device_info query, Property wanted) {
   if (types.empty() || clGetDeviceInfo(device, query, bytes, types.data(), nullptr) != CL_SUCCESS)
     return false;
   return std::find(types.begin(), types.end(), wanted) != types.end();
-}
-
-std::string text_of(const DeviceUuid& uuid) {
-  std::string text;
-  for (const std::uint8_t byte : uuid)
-    text += fmt::format("{:02x}", byte);
-  return text;
 }
 
 // A file descriptor of our own: importing takes it over.
@@ -106,7 +99,7 @@ Status check(const ExternalMemory& external, const DeviceInfo& device) {
   if (external.device == DeviceUuid{} || external.device == device.uuid) return {};
   return Status::invalid(fmt::format(
       "{}: the memory lies on the device {}, and '{}' is the device {}; import it where it was allocated",
-      kCall, text_of(external.device), device.name, text_of(device.uuid)));
+      kCall, uuid_text(external.device), device.name, uuid_text(device.uuid)));
 }
 
 cl::Buffer import_fd(const Device::Impl& device, const ExternalMemory& external, OwnFd& fd) {
@@ -134,6 +127,13 @@ void learn_imports(const cl::Device& device, DeviceInfo& info) {
   }
   if (has_extension(device, "cl_khr_external_semaphore"))
     info.imports_semaphores = lists(device(), kSemaphoreImports, kSemaphoreFd);
+}
+
+std::string uuid_text(const DeviceUuid& uuid) {
+  std::string text;
+  for (const std::uint8_t byte : uuid)
+    text += fmt::format("{:02x}", byte);
+  return text;
 }
 
 struct SharedMemory::Impl {

@@ -14,6 +14,11 @@ int round_up(int value, int step) {
   return (value + step - 1) / step * step;
 }
 
+// Work-items that fill a compute unit: as many as a multiprocessor of NVIDIA's holds at once, or enough of a CPU's that
+// threads end alike.
+constexpr int kItemsOfGpuUnit = 2048;
+constexpr int kItemsOfCpuUnit = 16;
+
 std::string options_of(const PassSpec& spec, const Device::Impl& device) {
   if (spec.registers == 0 || !device.limits_registers) return spec.options;
   return fmt::format("{} -cl-nv-maxrregcount={}", spec.options, spec.registers);
@@ -27,7 +32,8 @@ Pass::Pass(const PassSetup& setup, const PassSpec& spec)
       kernel_(build_kernel(setup.device, spec.kernel, options_of(spec, setup.device))),
       shape_(with_smaller_group(setup.device.profile.shape_of(spec.kernel),
                                 kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(setup.device.device))),
-      items_at_once_(setup.device.info.compute_units * (setup.device.lanes == 1 ? 2048 : 16)) {
+      items_at_once_(setup.device.info.compute_units *
+                     (setup.device.lanes == 1 ? kItemsOfGpuUnit : kItemsOfCpuUnit)) {
   for (const Use& use : spec_.uses)
     uses_[index_of(use.resource)] = true;
   stand_ins_[0] = setup.tables.stand_in(Storage::kBuffer);

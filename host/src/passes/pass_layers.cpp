@@ -167,7 +167,7 @@ class ResolveLayersPass : public Pass {
          Resource::kDepth, Resource::kPreviousDepth, Resource::kOpenTrust, Resource::kSplits,
          Resource::kPreviousHistory, Resource::kPreviousHistoryAlpha, Resource::kPreviousNearHistory,
          Resource::kPreviousLayerStates, Resource::kPreviousTileReprojection, Resource::kPreviousLayerTiles,
-         Resource::kTileReprojection, Resource::kLayerTiles, Resource::kTileLight, Resource::kLayeredTiles,
+         Resource::kTileReprojection, Resource::kLayerTiles, Resource::kTileLight, Resource::kLayeredTileList,
          Resource::kTotalLight, Resource::kHistory, Resource::kHistoryAlpha, Resource::kNearHistory,
          Resource::kLayerStates, frame.counter);
     launch_over_list(frame, event);
@@ -190,7 +190,7 @@ void plan_resolve_layers(const PlanFacts& facts, PassList& list) {
                      Resource::kPreviousNearHistory, Resource::kPreviousLayerStates,
                      Resource::kPreviousTileReprojection, Resource::kPreviousLayerTiles,
                      Resource::kTileReprojection, Resource::kLayerTiles, Resource::kTileLight,
-                     Resource::kLayeredTiles, Resource::kTotalLight},
+                     Resource::kLayeredTileList, Resource::kTotalLight},
            .writes = {Resource::kHistory, Resource::kNearHistory, Resource::kLayerStates}}),
       .make = make_pass<ResolveLayersPass>,
       .frames = Frames::kSparse,
@@ -228,7 +228,7 @@ class DisplayLayersPass : public Pass {
     const HistorySamples now =
         history_samples(frame.inputs, frame.output, layout_of(frame[Resource::kDepth]));
     bind(frame, params, now, Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
-         Resource::kLayeredTiles, Resource::kTotalLight, Resource::kHistory, Resource::kNearHistory,
+         Resource::kLayeredTileList, Resource::kTotalLight, Resource::kHistory, Resource::kNearHistory,
          Resource::kLayerStates, shown);
     launch_over_list(frame, event);
   }
@@ -247,7 +247,7 @@ void plan_display_layers(const PlanFacts& facts, PassList& list) {
        .reason = "the second layer: the near one laid over the picture",
        .uses =
            uses_of(settings, {.reads = {Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
-                                        Resource::kLayeredTiles, Resource::kTotalLight, Resource::kHistory,
+                                        Resource::kLayeredTileList, Resource::kTotalLight, Resource::kHistory,
                                         Resource::kNearHistory, Resource::kLayerStates},
                               .writes = {centred_of(facts)}}),
        .make = make_pass<DisplayLayersPass>,

@@ -43,7 +43,7 @@ class TemporalTilesPass : public Pass {
     bind(frame, params, Resource::kColour, Resource::kReprojection, Resource::kPreviousHistory,
          Resource::kPreviousTileReprojection, Resource::kDepth, layout_of(frame[Resource::kDepth]),
          Resource::kSplits, Resource::kSplitMarks, Resource::kPreviousLayerTiles, Resource::kLayerTiles,
-         Resource::kLayeredTiles, Resource::kTileReprojection, Resource::kTileEvidence,
+         Resource::kLayeredTileList, Resource::kTileReprojection, Resource::kTileEvidence,
          Resource::kTotalLight);
     launch(frame, tiles, columns_per_item(shape(), tiles.width, 1), event);
   }
@@ -66,7 +66,7 @@ void plan_temporal_tiles(const PlanFacts& facts, PassList& list) {
   spec.add_where(
       facts.has_layers(), "LAYERS", settings,
       {.reads = {Resource::kDepth, Resource::kSplits, Resource::kSplitMarks, Resource::kPreviousLayerTiles},
-       .writes = {Resource::kLayerTiles, Resource::kLayeredTiles}});
+       .writes = {Resource::kLayerTiles, Resource::kLayeredTileList}});
   spec.add_options(fmt::format("{} -D HISTORY_FORMAT={}", colour_options(settings),
                                precision_of(settings.temporal.history)));
   list.passes.push_back(std::move(spec));

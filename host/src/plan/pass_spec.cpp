@@ -156,7 +156,7 @@ constexpr OwnResource kOwnResources[] = {
      Area::kTiles,
      {.bytes = sizeof(LayerTile)},
      Resource::kPreviousLayerTiles},
-    {Resource::kLayeredTiles, "layered tiles", Area::kTiles, {.bytes = sizeof(cl_int)}},
+    {Resource::kLayeredTileList, "list of layered tiles", Area::kTiles, {.bytes = sizeof(cl_int)}},
     {Resource::kNearHistory,
      "near history",
      Area::kOutput,

@@ -75,7 +75,7 @@ enum class Resource : std::uint8_t {
   kSplitMarks,
   kLayerTiles,
   kPreviousLayerTiles,
-  kLayeredTiles,
+  kLayeredTileList,
   kNearHistory,
   kPreviousNearHistory,
   kLayerStates,

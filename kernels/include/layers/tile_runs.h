@@ -8,14 +8,15 @@
 #include "temporal/tile.h"
 
 enum { kRunsOfRow = kTemporalTile / kLanes, kRunsOfTile = kRunsOfRow * kTemporalTile };
+enum { kRunsInTurn = kLanes == 1 ? 1 : kRunsOfTile };  // that an item takes before those of the other items
 
 static inline int first_run(void) {
-  return get_global_id(0) * (kLanes == 1 ? 1 : kRunsOfTile);
+  return get_global_id(0) * kRunsInTurn;
 }
 
 static inline int next_run(int run) {
-  if (kLanes != 1 && run % kRunsOfTile != kRunsOfTile - 1) return run + 1;
-  return run + ((int)get_global_size(0) - 1) * (kLanes == 1 ? 1 : kRunsOfTile) + 1;
+  const int next = run + 1;
+  return next % kRunsInTurn != 0 ? next : next + ((int)get_global_size(0) - 1) * kRunsInTurn;
 }
 
 // Returns the first pixel of a run in a tile of a picture of `tiles_x` tiles in a row.

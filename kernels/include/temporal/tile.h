@@ -7,7 +7,8 @@
 //                                      the same frame, temporal_tiles and resolve_temporal in
 //                                      the next
 //   TileEvidence       temporal_tiles  temporal_light in the same frame                           one frame
-//   TotalLight         temporal_tiles  temporal_light in the same frame                           one frame
+//   TotalLight         temporal_tiles  temporal_light, resolve_layers and display_layers in the   one frame
+//                                      same frame
 //   TileLight          temporal_light  resolve_temporal in the same frame, temporal_light in the  two frames
 //                                      next
 //

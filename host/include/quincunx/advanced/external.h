@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "quincunx/advanced/export.h"
 #include "quincunx/status.h"
@@ -25,6 +26,9 @@ namespace quincunx {
 
 // The number by which APIs know a device again (VkPhysicalDeviceIDProperties::deviceUUID); zeros: unknown.
 using DeviceUuid = std::array<std::uint8_t, 16>;
+
+// Returns its 32 hexadecimal digits.
+QUINCUNX_API std::string uuid_text(const DeviceUuid& uuid);
 
 enum class MemoryHandle : std::uint8_t {
   kOpaqueFd,  // VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT, GL_HANDLE_TYPE_OPAQUE_FD_EXT
