@@ -40,7 +40,8 @@ using ReleaseSemaphore = cl_int(CL_API_CALL*)(SemaphoreHandle);
 // Returns a function of an extension; throws where the driver lists the extension and has no such function.
 template <typename Function>
 Function extension(const cl::Device& device, const char* name) {
-  void* const found = clGetExtensionFunctionAddressForPlatform(device.getInfo<CL_DEVICE_PLATFORM>(), name);
+  const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());  // a handle, or one by newer headers
+  void* const found = clGetExtensionFunctionAddressForPlatform(platform(), name);
   if (found == nullptr) throw std::runtime_error(fmt::format("the driver has no {}", name));
   return reinterpret_cast<Function>(found);
 }
