@@ -11,14 +11,21 @@
 //   listed        in      the tiles that are layered, in any order; other VIEWs look at all
 //   total         in      TotalLight: how many those are
 //   history       in      the far layer
+//   alpha         in      ALPHA 1: its alpha
 //   near_history  in      the near layer
 //   states        in      LayerState of each texel of a layered tile
 //   output        in/out  RGBA32F or RGBA16F, output extent
-// Options: VIEW  PICTURE (default) | LAYERS, COVERAGE, NEAR: what layers there are, in every pixel: red where there are
+// Options: ALPHA 0 (default) | 1: layers have alpha; 0: they are opaque
+//          VIEW  PICTURE (default) | LAYERS, COVERAGE, NEAR: what layers there are, in every pixel: red where there are
 //                two, green the near one's coverage, blue the far one's confidence; that coverage; the near one alone
 //          SOURCE_STORAGE, OUTPUT_FORMAT, HISTORY_FORMAT as of temporal_display
 // Reference: tests/reference/display_layers.cpp
+#ifndef ALPHA
 #define ALPHA 0
+#endif
+#if ALPHA < 0 || ALPHA > 1
+#error "ALPHA must be 0 or 1"
+#endif
 #include "bits.h"
 #include "layers/constants.h"
 #include "layers/past_layers.h"
@@ -39,17 +46,22 @@
 
 #if VIEW == PICTURE
 // Shows pixels. `far` is the picture so far, `confidence` that of the far layer, as stored: its sign tells whether
-// there are two layers. Where there is one, `near` is 0.
-static inline LaneTexels shown_of(LaneTexels far, LaneTexels near, LaneFloat confidence) {
+// there are two layers. Where there is one, `near` and `near_alpha` are 0.
+static inline LaneTexels shown_of(LaneTexels far, LaneTexels near, LaneFloat near_alpha, LaneFloat confidence) {
   const LaneFloat covered = last_channels(near), coverage = clamp(covered, 0.0f, 1.0f);
   const LaneFloat unknown = clamp(1.0f - fabs(confidence) / CONFIDENCE_MIN, 0.0f, 1.0f);
   const LaneMask is_stood_in = (unknown > 0.0f) & (coverage > SHOWN_COVERAGE_MIN);
-  const LaneTexels behind = select_texels(far, move_to(far, over(near, covered), unknown), is_stood_in);
-  const LaneTexels composed = add_times(with_last(near, coverage), behind, 1.0f - coverage);
+#if ALPHA
+  const LaneTexels whole = with_last(near, near_alpha), laid = whole;
+#else
+  const LaneTexels whole = near, laid = with_last(near, coverage);
+#endif
+  const LaneTexels behind = select_texels(far, move_to(far, over(whole, covered), unknown), is_stood_in);
+  const LaneTexels composed = add_times(laid, behind, 1.0f - coverage);
   return select_texels(far, composed, as_lane_int(confidence) < 0);
 }
 #else
-static inline LaneTexels shown_of(LaneTexels far, LaneTexels near, LaneFloat confidence) {
+static inline LaneTexels shown_of(LaneTexels far, LaneTexels near, LaneFloat near_alpha, LaneFloat confidence) {
   const LaneFloat one = (LaneFloat)(1.0f);
 #if VIEW == LAYERS
   const LaneFloat has_two = select((LaneFloat)(0.0f), one, as_lane_int(confidence) < 0);
@@ -136,14 +148,35 @@ static inline LaneTexels sample_near(const PastLayers* known, DEPTH_TEXELS depth
 }
 #endif
 
+// Resamples its alphas, which are multiplied by coverage, in `lanes`; of the others 0.
+static inline LaneFloat near_alphas(const PastLayers* known, DEPTH_TEXELS depth, float between, Display display, int x,
+                                    int y, LaneMask lanes) {
+  LaneFloat found = (LaneFloat)(0.0f);
+#if ALPHA
+  for (int i = 0; i < kLanes; ++i) {
+    if (FIRST_LANE(lanes)) {
+      const int at = x + i;
+      FIRST_LANE(found) =
+          display.has_phase ? sample_near_alpha(known, depth, between, at - display.step_x, y - display.step_y,
+                                                display.wx, display.wy)
+                            : load_state(known->states, y * known->far.width + at).near_alpha;
+    }
+    lanes = NEXT_LANES(lanes);
+    found = NEXT_LANES(found);
+  }
+#endif
+  return found;
+}
+
 __kernel void display_layers(const TemporalDisplayParams params, const HistorySamples now, DEPTH_TEXELS depth,
                              __global const TileReprojection* tiles, __global const LayerTile* layers,
                              __global const int* listed, __global const TotalLight* total, HISTORY_TEXELS history,
-                             HISTORY_TEXELS near_history, __global const half* states, OUTPUT_TEXELS output) {
+                             HISTORY_TEXELS alpha, HISTORY_TEXELS near_history, __global const half* states,
+                             OUTPUT_TEXELS output) {
   const int all = params.tiles_x * ((params.output_height + kTemporalTile - 1) / kTemporalTile);
   const int end = (VIEW == PICTURE ? total->layered : all) * kRunsOfTile;
   const PastLayers known =
-      past_layers(params.output_width, params.output_height, now, history, 0, near_history, states, tiles, layers);
+      past_layers(params.output_width, params.output_height, now, history, alpha, near_history, states, tiles, layers);
   for (int run = first_run(); run < end; run = next_run(run)) {
     const int tile = VIEW == PICTURE ? listed[run / kRunsOfTile] : run / kRunsOfTile;
     const LayerTile layer = layers[tile];
@@ -156,10 +189,15 @@ __kernel void display_layers(const TemporalDisplayParams params, const HistorySa
     if (VIEW == PICTURE && !any_split) continue;
     const Display display = display_of(layer.phase_x, layer.phase_y);
     LaneTexels near = no_texels();
-    if (any_split) near = sample_near(&known, depth, layer.between, display, x, y);
+    LaneFloat near_alpha = (LaneFloat)(0.0f);
+    const LaneMask is_split = as_lane_int(confidence) < 0;
     const int index = texel_index(params.output, x, y), count = min(params.output_width - x, (int)kLanes);
-    const LaneTexels known_near = select_texels(no_texels(), near, as_lane_int(confidence) < 0);
+    if (any_split) {
+      near = sample_near(&known, depth, layer.between, display, x, y);
+      near_alpha = near_alphas(&known, depth, layer.between, display, x, y, is_split & (LANE_NUMBERS < count));
+    }
+    const LaneTexels known_near = select_texels(no_texels(), near, is_split);
     const LaneTexels far = load_pixels(output, index, count);
-    stream_output_lanes(output, params.output, x, y, count, shown_of(far, known_near, confidence));
+    stream_output_lanes(output, params.output, x, y, count, shown_of(far, known_near, near_alpha, confidence));
   }
 }

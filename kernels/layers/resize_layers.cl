@@ -12,14 +12,20 @@
 //   previous_tiles     in   TileReprojection of each tile of the history
 //   previous_layers    in   LayerTile of each
 //   history            in   the far layer
+//   alpha              in   ALPHA 1: its alpha
 //   near_history       in   the near layer
 //   states             in   LayerState of each texel of a layered tile
 //   layers             in   LayerTile of each of the output's tiles
 //   resized_near       out  the near layer of pixels that have two
 //   resized_states     out  LayerState of each pixel of a layered tile
-// Options: SOURCE_STORAGE, HISTORY_FORMAT as of resolve_layers
+// Options: ALPHA, SOURCE_STORAGE, HISTORY_FORMAT as of resolve_layers
 // Reference: tests/reference/resize_history.cpp
+#ifndef ALPHA
 #define ALPHA 0
+#endif
+#if ALPHA < 0 || ALPHA > 1
+#error "ALPHA must be 0 or 1"
+#endif
 #include "arithmetic.h"
 #include "layers/past_layers.h"
 #include "temporal/constants.h"
@@ -59,9 +65,9 @@ static inline float4 near_at(const PastLayers* past, DEPTH_TEXELS depth, float b
   return sample_neighbourhood(load_near_texels(past, depth, between, window_at(past, x, y, 4)), wx, wy);
 }
 
-// Adds `part` of the near layer at one place of each of the first `count` pixels that has two.
+// Adds `part` of the near layer, and of its alpha, at one place of each of the first `count` pixels that has two.
 static inline void add_near(const PastLayers* past, DEPTH_TEXELS depth, const NearestTexels* nearest,
-                            SourcePlaces from, int count, float part, float4* sums) {
+                            SourcePlaces from, int count, float part, float4* sums, float* alphas) {
   LaneInt x = from.x.texel, y = from.y.texel;
   Cubic wx = cubic_weights(from.x.fraction, HISTORY_SHARPNESS), wy = cubic_weights(from.y.fraction, HISTORY_SHARPNESS);
   for (int i = 0; i < count; ++i) {
@@ -69,6 +75,10 @@ static inline void add_near(const PastLayers* past, DEPTH_TEXELS depth, const Ne
       const float between = 0.5f * (nearest->far_depth[i] + nearest->near_depth[i]);
       const float4 x_weights = first_weights(wx), y_weights = first_weights(wy);
       sums[i] += near_at(past, depth, between, FIRST_LANE(x), FIRST_LANE(y), x_weights, y_weights) * part;
+#if ALPHA
+      alphas[i] +=
+          sample_near_alpha(past, depth, between, FIRST_LANE(x), FIRST_LANE(y), x_weights, y_weights) * part;
+#endif
     }
     x = NEXT_LANES(x);
     y = NEXT_LANES(y);
@@ -80,30 +90,35 @@ static inline void add_near(const PastLayers* past, DEPTH_TEXELS depth, const Ne
 __kernel void resize_layers(const ResizeParams params, const HistorySamples before, __global const int* positions,
                             DEPTH_TEXELS depth, __global const TileReprojection* previous_tiles,
                             __global const LayerTile* previous_layers, HISTORY_TEXELS history,
-                            HISTORY_TEXELS near_history, __global const half* states, __global const LayerTile* layers,
-                            STORED_HISTORY resized_near, __global half* resized_states) {
+                            HISTORY_TEXELS alpha, HISTORY_TEXELS near_history, __global const half* states,
+                            __global const LayerTile* layers, STORED_HISTORY resized_near,
+                            __global half* resized_states) {
   const int y = get_global_id(1);
   const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kLanes);
   if (item.first >= item.end || y >= params.height) return;
 
   const Positions row = row_among_texels(&params, positions, y);
   const int places = params.places_x * params.places_y;
-  const PastLayers past = past_layers(params.previous_width, params.previous_height, before, history, 0, near_history,
-                                      states, previous_tiles, previous_layers);
+  const PastLayers past = past_layers(params.previous_width, params.previous_height, before, history, alpha,
+                                      near_history, states, previous_tiles, previous_layers);
   for (int x = item.first; x < item.end; x += item.step) {
     if (!layers[y / kTemporalTile * params.tiles_x + x / kTemporalTile].is_layered) continue;
     const int count = min(pixels_from(item, x), (int)kLanes);
     ResizedPixels pixels = pixels_among_texels(&params, positions, x, row);
     const NearestTexels nearest = look_at_nearest(&params, &past, depth, &pixels);
-    store_states(resized_states, y * params.width + x, count, LOAD_LANES(nearest.far_depth),
-                 LOAD_LANES(nearest.near_depth), LOAD_LANES(nearest.near_confidence));
     float4 sums[kLanes];
-    for (int i = 0; i < kLanes; ++i) sums[i] = (float4)(0.0f);
+    float alphas[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      sums[i] = (float4)(0.0f);
+      alphas[i] = 0.0f;
+    }
     for (int place = 0; place < places; ++place) {
       const SourcePlaces from =
           places_among_texels(&params, &pixels, place % params.places_x, place / params.places_x);
-      add_near(&past, depth, &nearest, from, count, 1.0f / (float)places, sums);
+      add_near(&past, depth, &nearest, from, count, 1.0f / (float)places, sums, alphas);
     }
+    store_states(resized_states, y * params.width + x, count, LOAD_LANES(nearest.far_depth),
+                 LOAD_LANES(nearest.near_depth), LOAD_LANES(nearest.near_confidence), LOAD_LANES(alphas));
     for (int i = 0; i < count; ++i) {
       if (nearest.is_split[i]) store_history(resized_near, y * params.width + x + i, sums[i]);
     }

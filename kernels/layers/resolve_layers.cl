@@ -3,7 +3,8 @@
 // sample nearest to its picture.
 //   One layer: as in resolve_temporal, but of texels of two layers it takes the one of its own depth.
 //   The far layer: the same, with samples of the far surface only. It is not rectified.
-//   The near layer: follows the near surface; a sample of the far one counts as one of no colour and no coverage.
+//   The near layer: follows the near surface; a sample of the far one counts as one of no colour and no coverage, one
+//   of the near one covers wholly, whatever its alpha.
 //
 //   params             in   as in resolve_temporal
 //   before             in   the previous frame's samples
@@ -17,7 +18,7 @@
 //   history            in   the far layer of the previous frame
 //   alpha              in   ALPHA 1: its alpha
 //   near_history       in   the near layer of the previous frame, in the same format
-//   states             in   LayerState of each texel of the previous frame
+//   states             in   LayerState of each texel of the previous frame, with the near layer's alpha
 //   previous_tiles     in   TileReprojection of each tile, of the previous frame
 //   previous_layers    in   LayerTile of each tile, of the previous frame
 //   tiles, layers      in   the same of this frame
@@ -29,8 +30,7 @@
 //   updated_near       out  its near layer
 //   updated_states     out  LayerState of each texel of a layered tile
 //   non_finite         out  non_finite[params.counter] grows by the pixels whose sample is NaN or infinite
-// Options: ALPHA  0 (default) | 1: alpha is accumulated, too: in the far layer as colour is, of texels that are taken
-//                 for what they are; in the near one as its coverage
+// Options: ALPHA  0 (default) | 1: alpha is accumulated, in both layers as colour is
 //          SOURCE_STORAGE, SOURCE_FORMAT, HISTORY_FORMAT as of resolve_temporal
 // Reference: tests/reference/resolve_layers.cpp
 #ifndef ALPHA
@@ -73,14 +73,18 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     const LayeredPixels pixels = find_layers(depth, depth_layout, &params, splits, open_trust, &nearest);
     Reprojections motion = load_reprojections(&params, reprojection, &nearest);
     const BothLayers fetched_both = fetch_both(&pixels, &past, depth1, tile, layer, &motion, x, y);
-    LaneFloat known_alpha = fetched_both.far.known.alpha;
-    const FetchedHistory fetched = known_far(&pixels, &fetched_both.far, &motion);
+    LaneFloat known_alpha;
+    const FetchedHistory fetched = known_far(&pixels, &fetched_both.far, &motion, &known_alpha);
     Evidence evidence = limit_confidence(&fetched, &motion);
     const RowLight row_light = light_of_row(light, &params, x, y);
     reject_by_light(&evidence, row_light);
     evidence.rejection = select(evidence.rejection, (LaneFloat)(0.0f), pixels.is_split);
     LaneTexels known = relight(fetched.texels, row_light);
     LaneTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
+#if ALPHA
+    // What nothing is known of, and no sample shows, is as transparent as what hides it.
+    known_alpha = select(known_alpha, last_channels(samples), are_valid(samples) & (fetched.confidence == 0.0f));
+#endif
     LaneFloat taken = far_samples(&pixels);
     if (light[tile_index].holds_back)
       taken = select(taken, (LaneFloat)(0.0f), are_held_back(known, evidence.confidence, samples));
@@ -102,7 +106,7 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     // The near layers.
     const LaneFloat zero = (LaneFloat)(0.0f);
     if (!any_lane(pixels.is_split)) {
-      store_states(updated_states, index, count, pixels.depth, zero, zero);
+      store_states(updated_states, index, count, pixels.depth, zero, zero, zero);
       continue;
     }
     TileReprojection near_tile = {.is_rigid = layer.is_rigid};
@@ -115,7 +119,8 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     const LaneMask is_inside = LANE_NUMBERS < count;
     store_near(updated_near, index, near.texels, pixels.is_split & is_inside);
     store_states(updated_states, index, count, select(pixels.depth, pixels.far_depth, pixels.is_split),
-                 select(zero, pixels.near_depth, pixels.is_split), select(zero, near.confidence, pixels.is_split));
+                 select(zero, pixels.near_depth, pixels.is_split), select(zero, near.confidence, pixels.is_split),
+                 select(zero, ALPHA ? near.alpha : zero, pixels.is_split));
   }
   if (met_count > 0) atomic_add(non_finite + params.counter, met_count);
 }

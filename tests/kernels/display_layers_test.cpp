@@ -90,7 +90,12 @@ TEST_P(DisplayLayers, ATightFrameIsReadWithinItsEdges) {
 
 std::vector<StageVariant> variants() {
   using enum PixelFormat;
-  return {{}, {.colour = kRGBA8}, {.history = kRGBA16F, .resolved = kRGBA16F}, {.storage = Storage::kImage}};
+  return {{},
+          {.alpha = true},
+          {.colour = kRGBA8},
+          {.history = kRGBA16F, .resolved = kRGBA16F, .alpha = true},
+          {.history = kRGBA16F, .resolved = kRGBA16F},
+          {.storage = Storage::kImage}};
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, DisplayLayers, ::testing::ValuesIn(variants()),

@@ -139,12 +139,12 @@ void make_history(reference::LayerHistory& out, PixelFormat format, unsigned see
       const reference::LayerTile& tile = out.layers[out.tile(x, y)];
       std::mt19937 zone = field.zone(x, y, 3, 4);
       const bool has_two = tile.is_split && zone() % 2 == 0;
-      reference::StoredState state{kNan, kNan, kNan};
+      reference::StoredState state{kNan, kNan, kNan, kNan};
       Pixel near{kNan, kNan, kNan, kNan};
       if (tile.is_layered) {
         double depth = about(random, has_two || zone() % 2 == 0 ? kFar : kNear, .3);
         if (!has_two && random() % 60 == 0) depth = kNan;
-        state = {half(std::pow(depth, .25)), 0, 0};
+        state = {half(std::pow(depth, .25)), 0, 0, 0};
       }
       if (has_two) {
         double confidence = uniform(random, 0, 8);
@@ -157,6 +157,7 @@ void make_history(reference::LayerHistory& out, PixelFormat format, unsigned see
         state.near_confidence = half(confidence);
         near = {3 * coverage * uniform(random, 0, 1), coverage * uniform(random, 0, 1),
                 2 * coverage * uniform(random, 0, 1), coverage};
+        if (!out.alpha.empty()) state.near_alpha = half(coverage * uniform(random, -.2, 1.2));
         Pixel& far = out.far[out.texel(x, y)];
         far[3] = -far[3];
       }
@@ -310,7 +311,7 @@ std::vector<TileLight> lights_of(const std::vector<reference::Tile>& tiles) {
 cl::Buffer states_to_device(const std::vector<reference::StoredState>& states) {
   std::vector<Pixel> texels;
   for (const reference::StoredState& s : states)
-    texels.push_back({s.far_root, s.near_root, s.near_confidence, 0});
+    texels.push_back({s.far_root, s.near_root, s.near_confidence, s.near_alpha});
   return to_device(encode(PixelFormat::kRGBA16F, texels));
 }
 
@@ -403,6 +404,7 @@ std::vector<Pixel> LayerStages::run_display(Rig& rig, const LayerStageInputs& in
   const cl::Buffer far = to_device(encode(variant_.history, shown.far));
   const cl::Buffer near = to_device(encode(variant_.history, shown.near));
   const cl::Buffer states = states_to_device(shown.states);
+  const cl::Buffer alpha = variant_.alpha ? to_device(encode_plane(variant_.history, shown.alpha)) : far;
   const ImageView picture = rig.image(variant_.resolved, Storage::kBuffer, output, in.picture, -7);
   display_.run(in.previous, in.previous, output, rig.counter(),
                {{Resource::kTileReprojection, view_of(tiles)},
@@ -410,6 +412,7 @@ std::vector<Pixel> LayerStages::run_display(Rig& rig, const LayerStageInputs& in
                 {Resource::kLayeredTileList, view_of(listed)},
                 {Resource::kTotalLight, view_of(total)},
                 {Resource::kHistory, view_of(far)},
+                {Resource::kHistoryAlpha, view_of(alpha)},
                 {Resource::kNearHistory, view_of(near)},
                 {Resource::kLayerStates, view_of(states)},
                 {picture_of(display_.facts()), picture}});

@@ -196,7 +196,7 @@ class Resize : public ::testing::TestWithParam<StageVariant> {
         ++compared_;
         if (undecided) continue;
         ++decided_;
-        for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t c = 0; c < 4; ++c) {
           if (std::isnan(value.state[c])) {  // depth that is not finite
             ASSERT_TRUE(std::isnan(states[i][c])) << where;
             continue;

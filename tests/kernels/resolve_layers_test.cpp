@@ -43,7 +43,7 @@ class ResolveLayers : public ::testing::TestWithParam<StageVariant> {
       if (HasFatalFailure()) return;
     }
     if (GetParam().alpha) expect_near(value.alpha, bound.alpha, actual.alpha, what + " alpha", history);
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < 4; ++c) {
       if (std::isnan(value.state[c])) {  // depth that is not finite
         ASSERT_TRUE(std::isnan(actual.state[c])) << what << " state " << c;
         continue;

@@ -43,7 +43,7 @@ LayerTap<Real> only_tap(const LayerHistory& history, const LayerWish& wish, int 
   if (wish.near_depth > state.between()) {
     tap.value = as<Real>(history.near[history.texel(x, y)]);
     tap.confidence = state.near_confidence * tap.value[3];
-    tap.alpha = 1;
+    tap.alpha = state.near_alpha;
     tap.is_valid = are_alike<Real>(state.near_depth, wish.near_depth, kNearDepthStepMax);
   } else {
     tap.is_valid = tap.confidence > 0 && are_alike<Real>(state.far_depth, wish.near_depth, kFarDepthStepMax);
@@ -63,7 +63,7 @@ LayerTap<Real> far_tap(const LayerHistory& history, const LayerWish& wish, int x
     const Real divisor = max(coverage, kNearCoverageMin);
     return {{near[0] / divisor, near[1] / divisor, near[2] / divisor, 1},
             state.near_confidence * coverage,
-            1,
+            state.near_alpha / divisor,
             coverage >= kNearCoverageMin && state.near_depth >= least && state.near_depth <= most};
   }
   LayerTap<Real> tap = far_of<Real>(history, x, y);
@@ -85,9 +85,11 @@ LayerTap<Real> near_tap(const LayerHistory& history, const LayerWish& wish, int 
     tap.is_valid = false;
   } else if (is_behind || !(shown > between)) {
     tap.value = {};
+    tap.alpha = 0;
     tap.confidence = min(tap.confidence, kEmptyConfidenceMax);
   } else if (was_near) {
     tap.value = as<Real>(history.near[history.texel(x, y)]);
+    tap.alpha = state.near_alpha;
     tap.confidence = state.near_confidence;
   } else if (state.has_two()) {
     tap.confidence = min(tap.confidence, kEmptyConfidenceMax);
@@ -134,8 +136,8 @@ LayerStateOf<Real> state_at(const LayerHistory& history, int x, int y) {
   const std::size_t tile = history.tile(x, y);
   if (history.layers[tile].is_layered) {
     const StoredState& stored = history.states[history.texel(x, y)];
-    return {fourth_power<Real>(stored.far_root), fourth_power<Real>(stored.near_root),
-            stored.near_confidence};
+    return {fourth_power<Real>(stored.far_root), fourth_power<Real>(stored.near_root), stored.near_confidence,
+            stored.near_alpha};
   }
   const Frame& frame = history.frame;
   const auto nearest = [&](int texel, int axis, double jitter, int size) {

@@ -16,6 +16,7 @@ namespace quincunx::reference {
 // A texel of a layered tile, besides its colours, as it is stored: depths as their fourth roots.
 struct StoredState {
   double far_root = 0, near_root = 0, near_confidence = 0;
+  double near_alpha = 0;  // alpha of the near layer, times its coverage; 0 where the history has no alpha
 };
 
 template <typename Real>
@@ -23,6 +24,7 @@ struct LayerStateOf {
   Real far_depth = 0;   // depth of the far layer, or of the only one
   Real near_depth = 0;  // 0: there is one layer
   Real near_confidence = 0;
+  Real near_alpha = 0;
 
   bool has_two() const { return near_depth > 0; }
   Real between() const { return .5 * (far_depth + near_depth); }
@@ -34,7 +36,7 @@ struct LayerHistory {
   int height = 0;
   std::vector<Pixel> far;     // colour and confidence W of the far, or only, layer; -W where there are two
   std::vector<double> alpha;  // alpha of the far, or only, layer; empty: 1
-  std::vector<Pixel> near;    // premultiplied colour and coverage, where there are two
+  std::vector<Pixel> near;    // colour, times coverage, and coverage, where there are two
   std::vector<StoredState> states;  // in layered tiles
   std::vector<Tile> tiles;
   std::vector<LayerTile> layers;
@@ -53,33 +55,39 @@ struct LayerHistory {
 template <typename Real>
 LayerStateOf<Real> state_at(const LayerHistory& history, int x, int y);
 
-// A texel as the near layer before depth `between` has it: premultiplied colour and coverage. A texel of one layer
-// counts as its colour and 1 if it is nearer than that, else as 0.
-template <typename Real>
-PixelOf<Real> near_texel(const LayerHistory& history, const Real& between, int x, int y) {
-  if (history.has_two(x, y)) return as<Real>(history.near[history.texel(x, y)]);
-  if (!(state_at<Real>(history, x, y).far_depth > between)) return {};
-  const Pixel& alone = history.far[history.texel(x, y)];
-  return {alone[0], alone[1], alone[2], 1};
-}
-
 // Coverage from which a near layer may stand for a surface alone.
 constexpr double kNearCoverageMin = .3;
 
 // A texel of a layer.
 template <typename Real>
 struct LayerTap {
-  PixelOf<Real> value = {};
+  PixelOf<Real> value = {};  // colour, times coverage, and coverage
   Real confidence = 0;
-  Real alpha = 1;        // alpha of the far layer; a near one is opaque where it covers
+  Real alpha = 0;        // alpha, times coverage
   bool is_valid = true;  // false: the texel shows another surface
 };
+
+// A texel as the near layer before depth `between` has it. A texel of one layer counts as its colour and 1 if it is
+// nearer than that, else as 0.
+template <typename Real>
+LayerTap<Real> near_texel(const LayerHistory& history, const Real& between, int x, int y) {
+  const std::size_t texel = history.texel(x, y);
+  const auto state = state_at<Real>(history, x, y);
+  const bool is_opaque = history.alpha.empty();
+  if (history.has_two(x, y)) {
+    const PixelOf<Real> near = as<Real>(history.near[texel]);
+    return {near, 0, is_opaque ? near[3] : state.near_alpha};
+  }
+  if (!(state.far_depth > between)) return {};
+  const Pixel& alone = history.far[texel];
+  return {{alone[0], alone[1], alone[2], 1}, 0, is_opaque ? 1 : history.alpha[texel]};
+}
 
 template <typename Real>
 struct BlendedTaps {
   PixelOf<Real> value = {};
   Real confidence = 0;
-  Real alpha = 1;
+  Real alpha = 0;
   bool is_known = false;
 };
 
@@ -150,9 +158,9 @@ struct LayerWish {
 
 template <typename Real>
 struct FetchedLayer {
-  PixelOf<Real> value = {};  // premultiplied colour and coverage
+  PixelOf<Real> value = {};  // colour, times coverage, and coverage
   Real confidence = 0;       // 0: nothing is known
-  Real alpha = 1;            // alpha of the far layer
+  Real alpha = 0;            // alpha, times coverage
   Real between = 0;          // as of FetchedHistory
   bool was_split = false;    // the texel at that place has two layers
 };

@@ -132,16 +132,15 @@ ResizedLayersOf<Real> resize_layers(const LayerHistory& history, const OutputSiz
                    confidence_left(axes, state.near_confidence)};
   resized.is_split = history.has_two(near_x, near_y);
   if (!resized.is_split) return resized;
-  const auto near = [&](int i, int j) {
-    return LayerTap<Real>{near_texel<Real>(history, state.between(), i, j)};
-  };
+  const auto near = [&](int i, int j) { return near_texel<Real>(history, state.between(), i, j); };
   const std::array<double, 2>& phase = history.layers[history.tile(near_x, near_y)].phase;
-  mean_over_places<Real>(
-      axes, phase, resized, [&](const auto& texel, const auto& fraction, const Real& part, auto& mean) {
-        const auto read = blend_taps(history, texel, fraction, kHistorySharpness, near).value;
-        for (std::size_t c = 0; c < 4; ++c)
-          mean.near[c] += read[c] * part;
-      });
+  mean_over_places<Real>(axes, phase, resized,
+                         [&](const auto& texel, const auto& fraction, const Real& part, auto& mean) {
+                           const auto read = blend_taps(history, texel, fraction, kHistorySharpness, near);
+                           for (std::size_t c = 0; c < 4; ++c)
+                             mean.near[c] += read.value[c] * part;
+                           if (!history.alpha.empty()) mean.state[3] += read.alpha * part;
+                         });
   return resized;
 }
 

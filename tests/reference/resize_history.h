@@ -24,7 +24,7 @@ HistoryTexel<Real> resize_history(const TemporalInputs& history, const OutputSiz
 // A pixel of a layered tile of the output.
 template <typename Real>
 struct ResizedLayersOf {
-  std::array<Real, 3> state = {};  // as StoredState
+  std::array<Real, 4> state = {};  // as StoredState
   PixelOf<Real> near = {};         // where there are two layers
   bool is_split = false;
 };

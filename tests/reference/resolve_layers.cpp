@@ -10,7 +10,8 @@
 //              reseed            where W < .15: as in resolve_temporal, of the samples behind D alone; where there is
 //                                none nothing changes
 //              accumulate        n, if it lies behind D
-//   near layer, as premultiplied colour and coverage: a sample before D counts as its colour and 1, one behind as 0
+//   near layer, as colour and alpha, both times coverage, and coverage: a sample before D counts as its colour, its
+//              alpha and 1, one behind as 0
 //              fetch history     the near surface, at the place that p + R' moved from; where the near layers of the
 //                                tile move apart by more than 1 px, others may cross it
 //              limit confidence  W <- W / (1 + .2 k W); at most 8, and min(t, 1 - new cut) in place of t in
@@ -65,22 +66,30 @@ Side side_of(const Frame& frame, const Real& between, int x, int y) {
   return depth < between ? Side::kFar : Side::kNeither;
 }
 
-// Returns the near layer's share of a sample on either side.
-Pixel near_sample(const Pixel& sample, Side side, bool has_alpha) {
-  return side == Side::kNear ? Pixel{sample[0], sample[1], sample[2], has_alpha ? sample[3] : 1} : Pixel{};
+// A sample as a layer has it.
+struct Part {
+  Pixel value = {};  // colour and coverage
+  double alpha = 0;
+};
+
+// Returns a layer's part of a sample on either side.
+Part part_of(const Pixel& sample, Side side, Layer layer) {
+  if (layer == Layer::kNear && side == Side::kFar) return {};
+  return {{sample[0], sample[1], sample[2], 1}, sample[3]};
 }
 
 template <typename Real>
 struct LayerSeed {
   PixelOf<Real> value = {};
+  Real alpha = 0;
   bool is_known = false;  // a sample of the layer is near enough
 };
 
 // The Gaussian of those of the 3 x 3 samples that the layer has.
 template <typename Real>
 LayerSeed<Real> seed_of_layer(const Frame& frame, const Neighbourhood<Real>& near, const Real& between,
-                              Layer layer, bool has_alpha) {
-  PixelOf<Real> sum = {};
+                              Layer layer) {
+  LayerSeed<Real> seed;
   Real weights = 0;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
@@ -88,21 +97,22 @@ LayerSeed<Real> seed_of_layer(const Frame& frame, const Neighbourhood<Real>& nea
       const int y = near.y.sample + dy;
       const Side side = side_of(frame, between, x, y);
       if (side == Side::kNeither || (layer == Layer::kFar && side == Side::kNear)) continue;
-      const Pixel& own = texel_clamped(frame, x, y);
-      const Pixel sample = layer == Layer::kFar ? own : near_sample(own, side, has_alpha);
+      const Part sample = part_of(texel_clamped(frame, x, y), side, layer);
       const Real across = dx - near.x.past;
       const Real down = dy - near.y.past;
       const Real weight =
-          luma_weighted(bell((across * across + down * down) * kSeedFalloff), as<Real>(sample));
+          luma_weighted(bell((across * across + down * down) * kSeedFalloff), as<Real>(sample.value));
       weights += weight;
       for (std::size_t c = 0; c < 4; ++c)
-        sum[c] += sample[c] * weight;
+        seed.value[c] += sample.value[c] * weight;
+      seed.alpha += sample.alpha * weight;
     }
   }
-  LayerSeed<Real> seed;
   seed.is_known = weights > 0;
-  for (std::size_t c = 0; c < 4 && seed.is_known; ++c)
-    seed.value[c] = sum[c] / weights;
+  if (!seed.is_known) return seed;
+  for (Real& channel : seed.value)
+    channel = channel / weights;
+  seed.alpha = seed.alpha / weights;
   return seed;
 }
 
@@ -112,12 +122,12 @@ template <typename Real>
 void reseed_far(const LayeredPixel<Real>& pixel, const Frame& frame, const Neighbourhood<Real>& near,
                 Known<Real>& known) {
   if (!seamless(known.confidence < kConfidenceMin)) return;
-  const auto seed = seed_of_layer(frame, near, pixel.between, Layer::kFar, true);
+  const auto seed = seed_of_layer(frame, near, pixel.between, Layer::kFar);
   if (!seed.is_known) return;
   const Real share = max(1 - known.confidence / kConfidenceMin, 0);
   for (std::size_t c = 0; c < 3; ++c)
     known.colour[c] += (seed.value[c] - known.colour[c]) * share;
-  known.alpha += (seed.value[3] - known.alpha) * share;
+  known.alpha += (seed.alpha - known.alpha) * share;
   known.inertia = kSeedInertia * share;
   known.confidence = max(known.confidence, kConfidenceMin);
 }
@@ -140,20 +150,24 @@ HistoryTexel<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>&
   const auto fetched = fetch_layer(in.past, wish, place, tile.is_rigid);
   FetchedHistory<Real> history;
   history.between = fetched.between;
+  history.known.alpha = 0;
   if (fetched.value[3] > kNearCoverageMin) {
     for (std::size_t c = 0; c < 3; ++c)
       history.known.texel[c] = fetched.value[c] / fetched.value[3];
     history.known.texel[3] = fetched.confidence;
+    history.known.alpha = fetched.alpha / fetched.value[3];
   }
 
   // Limit confidence, reject, relight. Layers answer for depth.
   const Real trust = is_split || fetched.was_split ? Real(pixel.open_trust) : trust_at<Real>(now, near);
-  Known<Real> known{history.known.texel, fetched.alpha, limit_confidence(history, trust, motion_edge),
+  const Pixel& sample = texel_clamped(now.frame, near.x.sample, near.y.sample);
+  // What nothing is known of, and no sample shows, is as transparent as what hides it.
+  if (is_valid(sample) && history.known.texel[3] == 0) history.known.alpha = sample[3];
+  Known<Real> known{history.known.texel, history.known.alpha, limit_confidence(history, trust, motion_edge),
                     max(1 - trust, motion_edge_strength(Real(motion_edge)))};
   reject(now, in.tiles, pixel.x, pixel.y, known);
   relight(now, in.tiles, pixel.x, pixel.y, known.colour);
 
-  const Pixel& sample = texel_clamped(now.frame, near.x.sample, near.y.sample);
   const bool is_held_back = holds_back(pixel.tile->light, known, sample);
 
   // Rectify and reseed.
@@ -184,8 +198,9 @@ HistoryTexel<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>&
 
 template <typename Real>
 struct NearTexel {
-  PixelOf<Real> value = {};  // premultiplied colour and coverage
+  PixelOf<Real> value = {};  // colour, times coverage, and coverage
   Real confidence = 0;
+  Real alpha = 0;  // alpha, times coverage
 };
 
 template <typename Real>
@@ -196,7 +211,7 @@ NearTexel<Real> fetch_near(const ResolveInputs& in, const LayeredPixel<Real>& pi
   const bool may_cross = pixel.layers->motion_range > kCrossingMotionMin;
   const auto fetched = fetch_layer(in.past, {Layer::kNear, s.near_depth, s.far_depth, may_cross}, place,
                                    pixel.layers->is_rigid);
-  NearTexel<Real> near{fetched.value, fetched.confidence};
+  NearTexel<Real> near{fetched.value, fetched.confidence, fetched.alpha};
 
   // Limit confidence, relight.
   const auto gain = between_tiles<Real>(in.now, in.tiles, pixel.x, pixel.y, &TileLight::gain);
@@ -218,10 +233,11 @@ NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& p
   // Reseed.
   Real inertia = 0;
   if (seamless(near.confidence < kConfidenceMin)) {
-    const auto seed = seed_of_layer(frame, around, pixel.between, Layer::kNear, in.has_alpha());
+    const auto seed = seed_of_layer(frame, around, pixel.between, Layer::kNear);
     const Real share = max(1 - near.confidence / kConfidenceMin, 0);
     for (std::size_t c = 0; c < 4; ++c)
       near.value[c] += (seed.value[c] - near.value[c]) * share;
+    near.alpha += (seed.alpha - near.alpha) * share;
     inertia = kSeedInertia * share;
     if (seed.is_known)
       near.confidence = max(near.confidence, kConfidenceMin);
@@ -232,15 +248,15 @@ NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& p
   // Accumulate.
   const Side side = side_of(frame, pixel.between, around.x.sample, around.y.sample);
   if (side != Side::kNeither) {
-    const Pixel sample =
-        near_sample(texel_clamped(frame, around.x.sample, around.y.sample), side, in.has_alpha());
+    const Part sample = part_of(texel_clamped(frame, around.x.sample, around.y.sample), side, Layer::kNear);
     const double reach = std::max(kNearReach * std::max(in.now.spacing(0), in.now.spacing(1)), kWideReach);
-    const Real weight = sample_weight(as<Real>(sample), around.x.past * in.now.spacing(0),
+    const Real weight = sample_weight(as<Real>(sample.value), around.x.past * in.now.spacing(0),
                                       around.y.past * in.now.spacing(1), Real(reach));
     const Real total = near.confidence + weight;
     const Real share = weight / max(total + inertia, kWeightSumMin);
     for (std::size_t c = 0; c < 4; ++c)
-      near.value[c] += (sample[c] - near.value[c]) * share;
+      near.value[c] += (sample.value[c] - near.value[c]) * share;
+    near.alpha += (sample.alpha - near.alpha) * share;
     near.confidence = total;
   }
   near.confidence = min(near.confidence, kResampledConfidenceMax);
@@ -279,7 +295,8 @@ LayeredTexelOf<Real> resolve_layers(const ResolveInputs& in, int x, int y) {
   if (!texel.is_split) return texel;
   const NearTexel<Real> updated = update_near(in, pixel);
   texel.near = updated.value;
-  texel.state = {fourth_root<Real>(split.far_depth), fourth_root<Real>(split.near_depth), updated.confidence};
+  texel.state = {fourth_root<Real>(split.far_depth), fourth_root<Real>(split.near_depth), updated.confidence,
+                 in.has_alpha() ? updated.alpha : 0};
   return texel;
 }
 

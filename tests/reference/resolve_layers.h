@@ -27,7 +27,7 @@ struct LayeredTexelOf {
   PixelOf<Real> far = {};  // colour and W of the far, or only, layer; -W where there are two
   Real alpha = 1;          // alpha of the far, or only, layer
   PixelOf<Real> near = {};
-  std::array<Real, 3> state = {};  // as StoredState
+  std::array<Real, 4> state = {};  // as StoredState
   bool is_split = false;           // else there is no near layer
 };
 

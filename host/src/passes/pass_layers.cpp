@@ -228,8 +228,8 @@ class DisplayLayersPass : public Pass {
     const HistorySamples now =
         history_samples(frame.inputs, frame.output, layout_of(frame[Resource::kDepth]));
     bind(frame, params, now, Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
-         Resource::kLayeredTileList, Resource::kTotalLight, Resource::kHistory, Resource::kNearHistory,
-         Resource::kLayerStates, shown);
+         Resource::kLayeredTileList, Resource::kTotalLight, Resource::kHistory, Resource::kHistoryAlpha,
+         Resource::kNearHistory, Resource::kLayerStates, shown);
     launch_over_list(frame, event);
   }
 };
@@ -239,19 +239,20 @@ class DisplayLayersPass : public Pass {
 void plan_display_layers(const PlanFacts& facts, PassList& list) {
   if (!facts.has_layers() || facts.settings.temporal.view == TemporalView::kFar) return;
   const ResolveSettings& settings = facts.settings;
-  const PixelFormat history = settings.temporal.history;
-  list.passes.push_back(
-      {.kernel = "display_layers",
-       .options = fmt::format("-D VIEW={} {} -D HISTORY_FORMAT={}", layer_view_option(settings.temporal.view),
-                              scale_options(settings), precision_of(history)),
-       .reason = "the second layer: the near one laid over the picture",
-       .uses =
-           uses_of(settings, {.reads = {Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
-                                        Resource::kLayeredTileList, Resource::kTotalLight, Resource::kHistory,
-                                        Resource::kNearHistory, Resource::kLayerStates},
-                              .writes = {centred_of(facts)}}),
-       .make = make_pass<DisplayLayersPass>,
-       .frames = Frames::kSparse});
+  PassSpec spec{.kernel = "display_layers",
+                .reason = "the second layer: the near one laid over the picture",
+                .uses = uses_of(
+                    settings, {.reads = {Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
+                                         Resource::kLayeredTileList, Resource::kTotalLight,
+                                         Resource::kHistory, Resource::kNearHistory, Resource::kLayerStates},
+                               .writes = {centred_of(facts)}}),
+                .make = make_pass<DisplayLayersPass>,
+                .frames = Frames::kSparse};
+  spec.add_where(facts.accumulates_alpha(), "ALPHA", settings, {.reads = {Resource::kHistoryAlpha}});
+  spec.add_options(fmt::format("-D VIEW={} {} -D HISTORY_FORMAT={}",
+                               layer_view_option(settings.temporal.view), scale_options(settings),
+                               precision_of(settings.temporal.history)));
+  list.passes.push_back(std::move(spec));
 }
 
 }  // namespace quincunx

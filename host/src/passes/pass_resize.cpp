@@ -143,8 +143,9 @@ class ResizeLayersPass : public Pass {
         history_samples(frame.previous, frame.previous_output, layout_of(frame[Resource::kPreviousDepth]));
     bind(frame, params, before, frame.tables.positions().get(frame.queue, resize_key(frame)),
          Resource::kPreviousDepth, Resource::kPreviousTileReprojection, Resource::kPreviousLayerTiles,
-         Resource::kPreviousHistory, Resource::kPreviousNearHistory, Resource::kPreviousLayerStates,
-         Resource::kLayerTiles, Resource::kNearHistory, Resource::kLayerStates);
+         Resource::kPreviousHistory, Resource::kPreviousHistoryAlpha, Resource::kPreviousNearHistory,
+         Resource::kPreviousLayerStates, Resource::kLayerTiles, Resource::kNearHistory,
+         Resource::kLayerStates);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -168,20 +169,22 @@ class ResizeRecordsPass : public Pass {
 void plan_resize_layers(const PlanFacts& facts, PassList& list) {
   if (!facts.resizes_history() || !facts.has_layers()) return;
   const PixelFormat history = facts.settings.temporal.history;
-  list.passes.push_back(
-      {.kernel = "resize_layers",
-       .options = fmt::format("-D SOURCE_STORAGE={} -D HISTORY_FORMAT={}",
-                              storage_option(facts.settings.targets.storage), precision_of(history)),
-       .reason = "where the output's size changes: the second layer in the new one",
-       .uses = uses_of(
-           facts.settings,
-           {.reads = {Resource::kPreviousDepth, Resource::kPreviousTileReprojection,
-                      Resource::kPreviousLayerTiles, Resource::kPreviousHistory,
-                      Resource::kPreviousNearHistory, Resource::kPreviousLayerStates, Resource::kLayerTiles},
-            .writes = {Resource::kNearHistory, Resource::kLayerStates},
-            .resizes = true}),
-       .make = make_pass<ResizeLayersPass>,
-       .frames = Frames::kResized});
+  PassSpec spec{.kernel = "resize_layers",
+                .reason = "where the output's size changes: the second layer in the new one",
+                .uses = uses_of(facts.settings,
+                                {.reads = {Resource::kPreviousDepth, Resource::kPreviousTileReprojection,
+                                           Resource::kPreviousLayerTiles, Resource::kPreviousHistory,
+                                           Resource::kPreviousNearHistory, Resource::kPreviousLayerStates,
+                                           Resource::kLayerTiles},
+                                 .writes = {Resource::kNearHistory, Resource::kLayerStates},
+                                 .resizes = true}),
+                .make = make_pass<ResizeLayersPass>,
+                .frames = Frames::kResized};
+  spec.add_where(facts.accumulates_alpha(), "ALPHA", facts.settings,
+                 {.reads = {Resource::kPreviousHistoryAlpha}, .resizes = true});
+  spec.add_options(fmt::format("-D SOURCE_STORAGE={} -D HISTORY_FORMAT={}",
+                               storage_option(facts.settings.targets.storage), precision_of(history)));
+  list.passes.push_back(std::move(spec));
 }
 
 void plan_resize_records(const PlanFacts& facts, PassList& list) {

@@ -144,9 +144,9 @@ static inline bool may_meet_two(const PastLayers* past, const LayerSources* from
 
 // A layer of pixels as far as it is known.
 typedef struct KnownLayers {
-  LaneTexels texels;  // premultiplied colours and coverages
+  LaneTexels texels;      // colours, times coverages, and coverages
   LaneFloat confidence;   // 0: nothing is known
-  LaneFloat alpha;        // 1 without ALPHA
+  LaneFloat alpha;        // with ALPHA, times coverages
 } KnownLayers;
 
 // The same by channel.
@@ -156,8 +156,7 @@ typedef struct BlendedLayers {
 } BlendedLayers;
 
 static inline BlendedLayers nothing_blended(void) {
-  BlendedLayers nothing = {all_colours(0.0f), (LaneFloat)(0.0f)};
-  nothing.colours.alpha = (LaneFloat)(1.0f);
+  const BlendedLayers nothing = {all_colours(0.0f), (LaneFloat)(0.0f)};
   return nothing;
 }
 

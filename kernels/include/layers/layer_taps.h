@@ -15,10 +15,10 @@ typedef struct LayerWishes {
   float least_part, most_part;   // fractions of a near layer's depth: texels within that range show the same thing
 } LayerWishes;
 
-// Premultiplied colours and coverages, by channel.
+// Colours and alphas, times coverages, and coverages, by channel.
 typedef struct LayerColours {
   LaneFloat red, green, blue, coverage;
-  LaneFloat alpha;  // with ALPHA: of the far layer; a near one is opaque where it covers
+  LaneFloat alpha;  // with ALPHA
 } LayerColours;
 
 // One texel of each pixel as the layer has it.
@@ -52,14 +52,14 @@ static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWis
                                   select(known & are_alike(shown, wanted, FAR_DEPTH_STEP_MAX),
                                          are_alike(shown, wanted, NEAR_DEPTH_STEP_MAX), is_near), two);
 
-  // Behind another surface only the colour of a near layer is wanted.
+  // Behind another surface the coverage of a near layer does not matter.
   const LaneFloat whole = select((LaneFloat)(1.0f), 1.0f / max(coverage, (LaneFloat)(NEAR_COVERAGE_MIN)), split);
   LayerTaps taps;
   taps.colours.red = select(in_column(row->far.red, column), in_column(row->near.red, column) * whole, is_near);
   taps.colours.green = select(in_column(row->far.green, column), in_column(row->near.green, column) * whole, is_near);
   taps.colours.blue = select(in_column(row->far.blue, column), in_column(row->near.blue, column) * whole, is_near);
   taps.colours.coverage = select((LaneFloat)(1.0f), coverage, is_near & mask_not(split));
-  taps.colours.alpha = select(in_column(row->alpha, column), (LaneFloat)(1.0f), is_near);
+  taps.colours.alpha = select(in_column(row->alpha, column), in_column(row->near_alpha, column) * whole, is_near);
   taps.confidence = select(confidence, in_column(row->near_confidence, column) * coverage, is_near);
   taps.has_two = two;
   taps.valid = select(alone_valid, far_valid, split);
@@ -86,7 +86,8 @@ static inline LayerTaps near_taps(const LayerRow* row, int column, const LayerWi
   taps.colours.blue =
       select(none, select(in_column(far->blue, column), in_column(near->blue, column), is_near), is_ours);
   taps.colours.coverage = select(none, select((LaneFloat)(1.0f), in_column(near->last, column), is_near), is_ours);
-  taps.colours.alpha = (LaneFloat)(1.0f);
+  taps.colours.alpha =
+      select(none, select(in_column(row->alpha, column), in_column(row->near_alpha, column), is_near), is_ours);
   taps.confidence = select(select(empty, confidence, is_ours & mask_not(two)), in_column(row->near_confidence, column),
                            is_ours & is_near);
   taps.has_two = two;
@@ -177,25 +178,22 @@ static inline void add_middle_taps(LayerSums* sums, const LayerTaps* taps, LaneF
 }
 
 // Blends one channel: the cubic, held in the range of the middle four; bilinear where the cubic has lost most of its
-// weights; `nothing` where the middle four have lost theirs.
+// weights; 0 where the middle four have lost theirs.
 static inline LaneFloat blend_channel(LaneFloat cubic, LaneFloat bilinear, LaneFloat least, LaneFloat most,
-                                      const LayerSums* sums, float nothing) {
+                                      const LayerSums* sums) {
   const LaneFloat held = min(max(cubic / sums->weight, least), most);
   const LaneFloat blended = select(held, bilinear / sums->middle_weight, sums->weight < CUBIC_WEIGHT_MIN);
-  return select(blended, (LaneFloat)(nothing), sums->middle_weight < BILINEAR_WEIGHT_MIN);
+  return select(blended, (LaneFloat)(0.0f), sums->middle_weight < BILINEAR_WEIGHT_MIN);
 }
 
 static inline LayerColours blend_colours(const LayerSums* sums) {
   const LayerColours *cubic = &sums->cubic, *bilinear = &sums->bilinear, *least = &sums->least, *most = &sums->most;
   LayerColours colours;
-  colours.red = blend_channel(cubic->red, bilinear->red, least->red, most->red, sums, 0.0f);
-  colours.green = blend_channel(cubic->green, bilinear->green, least->green, most->green, sums, 0.0f);
-  colours.blue = blend_channel(cubic->blue, bilinear->blue, least->blue, most->blue, sums, 0.0f);
-  colours.coverage = blend_channel(cubic->coverage, bilinear->coverage, least->coverage, most->coverage, sums, 0.0f);
-  colours.alpha = (LaneFloat)(1.0f);
-#if ALPHA
-  colours.alpha = blend_channel(cubic->alpha, bilinear->alpha, least->alpha, most->alpha, sums, 1.0f);
-#endif
+  colours.red = blend_channel(cubic->red, bilinear->red, least->red, most->red, sums);
+  colours.green = blend_channel(cubic->green, bilinear->green, least->green, most->green, sums);
+  colours.blue = blend_channel(cubic->blue, bilinear->blue, least->blue, most->blue, sums);
+  colours.coverage = blend_channel(cubic->coverage, bilinear->coverage, least->coverage, most->coverage, sums);
+  colours.alpha = blend_channel(cubic->alpha, bilinear->alpha, least->alpha, most->alpha, sums);
   return colours;
 }
 

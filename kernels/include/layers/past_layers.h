@@ -17,7 +17,7 @@ typedef enum LayerKind {
 typedef struct PastLayers {
   HistoryLayer far;                        // colour and confidence
   AlphaPlane alpha;                        // with ALPHA: the far layer's
-  HistoryLayer near;                       // premultiplied colour and coverage
+  HistoryLayer near;                       // colour, times coverage, and coverage
   __global const half* states;             // see LayerState
   __global const TileReprojection* tiles;  // the far layer's
   __global const LayerTile* layer_tiles;
@@ -47,19 +47,20 @@ typedef struct LayerState {
   float far_depth;        // depth of the far layer, or of the only one
   float near_depth;       // 0: there is one layer
   float near_confidence;
+  float near_alpha;       // with ALPHA: the near layer's, times its coverage
 } LayerState;
 
 static inline LayerState load_state(__global const half* states, int index) {
   const float4 stored = vload_half4(index, states);
   const float4 squared = stored * stored;
-  const LayerState state = {squared.x * squared.x, squared.y * squared.y, stored.z};
+  const LayerState state = {squared.x * squared.x, squared.y * squared.y, stored.z, stored.w};
   return state;
 }
 
 // Stores the first `count`.
 static inline void store_states(__global half* states, int index, int count, LaneFloat far_depth, LaneFloat near_depth,
-                                LaneFloat near_confidence) {
-  LaneTexels rest = texels_of(sqrt(sqrt(far_depth)), sqrt(sqrt(near_depth)), near_confidence, (LaneFloat)(0.0f));
+                                LaneFloat near_confidence, LaneFloat near_alpha) {
+  LaneTexels rest = texels_of(sqrt(sqrt(far_depth)), sqrt(sqrt(near_depth)), near_confidence, near_alpha);
 #if LANES == 8
   if (count >= kLanes) {
     store_half_texels4(states, index, rest.left);
@@ -96,7 +97,7 @@ static inline LayerState state_at(const PastLayers* past, DEPTH_TEXELS depth, in
   const float2 place = (float2)((float)x + 0.5f, (float)y + 0.5f) + phase_of(past, tile, kFarLayer);
   const float2 at = floor((place - start) / spacing + 0.5f);
   const int column = clamp((int)at.x, 0, samples.width - 1), row = clamp((int)at.y, 0, samples.height - 1);
-  const LayerState state = {load_depth(depth, samples.depth, column, row), 0.0f, 0.0f};
+  const LayerState state = {load_depth(depth, samples.depth, column, row), 0.0f, 0.0f, 0.0f};
   return state;
 }
 
@@ -138,12 +139,12 @@ static inline float4 load_alpha_row(AlphaPlane plane, TexelWindow window, int ro
 
 // The states of four texels.
 typedef struct FourStates {
-  float4 far_depth, near_depth, near_confidence;
+  float4 far_depth, near_depth, near_confidence, near_alpha;
 } FourStates;
 
 static inline FourStates load_states(const PastLayers* past, DEPTH_TEXELS depth, TexelWindow window, int row) {
   const float4 none = (float4)(0.0f);
-  FourStates states = {none, none, none};
+  FourStates states = {none, none, none, none};
   const int x = window.x;
   const int y = window.is_inside ? window.y + row : clamp(window.y + row, 0, past->far.height - 1);
   if (window.has_states) {
@@ -152,6 +153,7 @@ static inline FourStates load_states(const PastLayers* past, DEPTH_TEXELS depth,
     states.far_depth = far * far;
     states.near_depth = near * near;
     states.near_confidence = stored.s26ae;
+    states.near_alpha = stored.s37bf;
     return states;
   }
   for (int i = 0; i < 4; ++i) {
@@ -159,11 +161,12 @@ static inline FourStates load_states(const PastLayers* past, DEPTH_TEXELS depth,
     states.far_depth = (float4)(states.far_depth.yzw, state.far_depth);
     states.near_depth = (float4)(states.near_depth.yzw, state.near_depth);
     states.near_confidence = (float4)(states.near_confidence.yzw, state.near_confidence);
+    states.near_alpha = (float4)(states.near_alpha.yzw, state.near_alpha);
   }
   return states;
 }
 
-// Loads four texels of the near layer's picture: premultiplied colours and coverages. A texel of one layer covers
+// Loads four texels of the near layer's picture: colours, times coverages, and coverages. A texel of one layer covers
 // wholly if it lies before `between`, else not at all.
 static inline float16 load_near_row(const PastLayers* past, DEPTH_TEXELS depth, float between, TexelWindow window,
                                     int row) {
@@ -188,6 +191,27 @@ static inline Neighbourhood load_near_texels(const PastLayers* past, DEPTH_TEXEL
                                 load_near_row(past, depth, between, window, 3)};
   return around;
 }
+
+#if ALPHA
+// Loads the alphas of such texels, times coverages.
+static inline float4 load_near_alpha_row(const PastLayers* past, DEPTH_TEXELS depth, float between, TexelWindow window,
+                                         int row) {
+  const int4 two = as_int4(load_row(past->far, window, row).s37bf) < 0;
+  const FourStates states = load_states(past, depth, window, row);
+  const float4 alone = select((float4)(0.0f), load_alpha_row(past->alpha, window, row), states.far_depth > between);
+  return select(alone, states.near_alpha, two);
+}
+
+// Resamples them among the 4x4 texels from (x, y) on.
+static inline float sample_near_alpha(const PastLayers* past, DEPTH_TEXELS depth, float between, int x, int y,
+                                      float4 wx, float4 wy) {
+  const TexelWindow window = window_at(past, x, y, 4);
+  return blend_alpha_rows(load_near_alpha_row(past, depth, between, window, 0),
+                          load_near_alpha_row(past, depth, between, window, 1),
+                          load_near_alpha_row(past, depth, between, window, 2),
+                          load_near_alpha_row(past, depth, between, window, 3), wx, wy);
+}
+#endif
 
 // ---- Rows of eight or twelve.
 
@@ -218,7 +242,7 @@ typedef struct LayerRow {
   LayerChannels far;   // or the only one; confidence as stored
   LayerChannels near;  // coverage; 0 in fours of texels of which none has two layers
   RowFloats alpha;     // the far layer's; 1 without ALPHA
-  RowFloats far_depth, near_depth, near_confidence;
+  RowFloats far_depth, near_depth, near_confidence, near_alpha;
 } LayerRow;
 
 // Returns a row without its first four texels, and with four more after the others, which fill the rest.
@@ -238,9 +262,9 @@ static inline LayerChannels push_channels(LayerChannels row, float16 texels) {
 
 static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth, RowWindows windows, int row) {
   const RowFloats none = (RowFloats)(0.0f);
-  LayerRow loaded = {{none, none, none, none}, {none, none, none, none}, none, none, none, none};
+  LayerRow loaded = {{none, none, none, none}, {none, none, none, none}, none, none, none, none, none};
   float16 far = (float16)(0.0f), near = far;
-  FourStates states = {none.s0123, none.s0123, none.s0123};
+  FourStates states = {none.s0123, none.s0123, none.s0123, none.s0123};
   float4 alpha = none.s0123;
   UNROLL(3)
   for (int i = 0; i < (LANES == 8 ? 3 : 1); ++i) {
@@ -257,6 +281,7 @@ static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth
     loaded.far_depth = push_four(loaded.far_depth, states.far_depth);
     loaded.near_depth = push_four(loaded.near_depth, states.near_depth);
     loaded.near_confidence = push_four(loaded.near_confidence, states.near_confidence);
+    loaded.near_alpha = push_four(loaded.near_alpha, states.near_alpha);
   }
   return loaded;
 }

@@ -78,7 +78,8 @@ typedef struct SeedSamples {
 } SeedSamples;
 
 typedef struct Seed {
-  float4 mean;  // alpha in w
+  float4 mean;  // w: coverage
+  float alpha;
   bool any;     // whether any sample is the layer's and valid; else the mean is 0
 } Seed;
 
@@ -88,7 +89,7 @@ typedef struct Seed {
 static inline Seed seed_of_layer(const SeedSamples* in, COLOUR_TEXELS colour, DEPTH_TEXELS depth, LayerKind kind,
                                  float between) {
   float4 sum = (float4)(0.0f);
-  float weights = 0.0f;
+  float alpha = 0.0f, weights = 0.0f;
   for (int i = 0; i < 9; ++i) {
     const int column = i % 3 - 1, row = i / 3 - 1;
     const int x = clamp(in->x + column, 0, in->frame.width - 1), y = clamp(in->y + row, 0, in->frame.height - 1);
@@ -96,17 +97,21 @@ static inline Seed seed_of_layer(const SeedSamples* in, COLOUR_TEXELS colour, DE
     const float own = load_depth(depth, in->depth, x, y);
     const bool is_near = own > between, is_far = own < between;
     if (!is_valid(sample) || !(is_far || (is_near && kind == kNearLayer))) continue;
-    if (kind == kNearLayer) {
-      if (!ALPHA) sample.w = 1.0f;
-      if (is_far) sample = (float4)(0.0f);
+    float own_alpha = sample.w;
+    sample.w = 1.0f;
+    if (kind == kNearLayer && is_far) {
+      sample = (float4)(0.0f);
+      own_alpha = 0.0f;
     }
     const float away_x = (float)column - in->from_x, away_y = (float)row - in->from_y;
     const LaneFloat near = bell((LaneFloat)((away_x * away_x + away_y * away_y) * SEED_FALLOFF));
     const float weight = FIRST_LANE(near) * luma_weight(sample);
     sum += sample * weight;
+    alpha += own_alpha * weight;
     weights += weight;
   }
-  const Seed seed = {weights > 0.0f ? sum / weights : (float4)(0.0f), weights > 0.0f};
+  const bool any = weights > 0.0f;
+  const Seed seed = {any ? sum / weights : (float4)(0.0f), any ? alpha / weights : 0.0f, any};
   return seed;
 }
 
@@ -127,7 +132,7 @@ static inline LaneFloat reseed_layer(LayerKind kind, LaneMask lanes, const Layer
         const float share = 1.0f - FIRST_LANE(*known) / CONFIDENCE_MIN;
         texel += (seed.mean - texel) * share;
 #if ALPHA
-        FIRST_LANE(*alpha) += (seed.mean.w - FIRST_LANE(*alpha)) * share;
+        FIRST_LANE(*alpha) += (seed.alpha - FIRST_LANE(*alpha)) * share;
 #endif
         FIRST_LANE(inertia) = SEED_INERTIA * share;
         FIRST_LANE(*known) = seed.any ? CONFIDENCE_MIN : 0.0f;
@@ -181,14 +186,17 @@ static inline BothLayers fetch_both(const LayeredPixels* pixels, const PastLayer
 
 // ---- Far layers.
 
-// Returns them as resolve_temporal fetches them. Layers answer for depth, so trust is open where there are or were two.
-static inline FetchedHistory known_far(const LayeredPixels* pixels, const FetchedLayers* far, Reprojections* motion) {
+// Returns them, and sets their alphas, as resolve_temporal fetches them. Layers answer for depth, so trust is open
+// where there are or were two.
+static inline FetchedHistory known_far(const LayeredPixels* pixels, const FetchedLayers* far, Reprojections* motion,
+                                       LaneFloat* alpha) {
   const KnownLayers layers = far->known;
   motion->trust = select(motion->trust, pixels->open_trust, pixels->is_split | far->from.was_split);
 
   const LaneFloat coverage = confidences(layers.texels);
   const LaneMask is_surface = coverage > NEAR_COVERAGE_MIN;
   const LaneFloat whole = select((LaneFloat)(0.0f), 1.0f / coverage, is_surface);
+  *alpha = layers.alpha * whole;
   const FetchedHistory fetched = {times(layers.texels, whole),
                                   select((LaneFloat)(0.0f), layers.confidence, is_surface),
                                   far->from.fraction_x,
@@ -236,21 +244,18 @@ static inline KnownLayers known_near(const LayeredPixels* pixels, const FetchedL
   return near;
 }
 
-// Turns samples into what the near layers have of them. Returns their weights: 0 of those that are invalid or of no
-// depth.
-static inline LaneFloat near_samples(LaneTexels* samples, LaneFloat depth, LaneFloat between) {
+// Turns samples into what the near layers have of them, and sets their alphas. Returns their weights: 0 of those that
+// are invalid or of no depth.
+static inline LaneFloat near_samples(LaneTexels* samples, LaneFloat* alpha, LaneFloat depth, LaneFloat between) {
   const LaneMask is_near = depth > between, is_far = depth < between;
   const LaneFloat none = (LaneFloat)(0.0f), one = (LaneFloat)(1.0f);
   LaneFloat weight = select(none, one, is_near | is_far);
   if (may_be_bright(*samples)) weigh_by_luma(samples, &weight, kLanes);
   const LaneMask counts = is_far & (weight > none);
   weight = select(weight, one, counts);  // what is not there is not bright
-#if ALPHA
-  const LaneFloat coverage = select(none, confidences(*samples), is_near);
-#else
   const LaneFloat coverage = select(none, one, is_near);
-#endif
-  *samples = with_last(times(*samples, select(none, one, is_near)), coverage);
+  *alpha = last_channels(*samples) * coverage;
+  *samples = with_last(times(*samples, coverage), coverage);
   return weight;
 }
 
@@ -268,10 +273,12 @@ static inline KnownLayers update_near(KnownLayers near, const LayeredPixels* pix
   LaneTexels samples = load_samples(colour, frame.colour, nearest->x, nearest->y);
   const LaneFloat own = load_depth_lanes(depth, layout, nearest->x, nearest->y);
   const float reach = max(NEAR_REACH * max(params->spacing_x, params->spacing_y), WIDE_REACH);
+  LaneFloat alpha;
   const LaneFloat weight =
-      near_samples(&samples, own, pixels->between) * distance_weights(params, nearest, (LaneFloat)(reach));
+      near_samples(&samples, &alpha, own, pixels->between) * distance_weights(params, nearest, (LaneFloat)(reach));
   const LaneFloat part = sample_parts(near.confidence, inertia, weight);
   near.texels = move_to(near.texels, samples, part);
+  near.alpha += (alpha - near.alpha) * part;
   near.confidence = min(near.confidence + weight, RESAMPLED_CONFIDENCE_MAX);
   return near;
 }

@@ -190,6 +190,16 @@ static inline LaneTexels blend_rows(TwelveTexels row0, TwelveTexels row1, Twelve
 #endif
 #endif
 
+#if TAPS != 4
+// Returns the cubic of 4x4 alphas, held in the range of the middle four.
+static inline float blend_alpha_rows(float4 row0, float4 row1, float4 row2, float4 row3, float4 x, float4 y) {
+  const float4 outer = MULTIPLY_ADD(row0, (float4)(y.x), row3 * y.w);
+  const float4 rows = MULTIPLY_ADD(row1, (float4)(y.y), MULTIPLY_ADD(row2, (float4)(y.z), outer));
+  const float2 least = min(row1.yz, row2.yz), most = max(row1.yz, row2.yz);
+  return min(max(dot(rows, x), min(least.x, least.y)), max(most.x, most.y));
+}
+#endif
+
 // Returns alpha as sample_history() returns colour.
 static inline float sample_alpha(AlphaPlane plane, int x0, int y0, float4 x, float4 y) {
   const float4 row1 = load_alpha_clamped4(plane, x0, y0 + 1), row2 = load_alpha_clamped4(plane, x0, y0 + 2);
@@ -197,9 +207,6 @@ static inline float sample_alpha(AlphaPlane plane, int x0, int y0, float4 x, flo
   return dot(MULTIPLY_ADD(row1, (float4)(y.y), row2 * y.z), x);
 #else
   const float4 row0 = load_alpha_clamped4(plane, x0, y0), row3 = load_alpha_clamped4(plane, x0, y0 + 3);
-  const float4 outer = MULTIPLY_ADD(row0, (float4)(y.x), row3 * y.w);
-  const float4 rows = MULTIPLY_ADD(row1, (float4)(y.y), MULTIPLY_ADD(row2, (float4)(y.z), outer));
-  const float2 least = min(row1.yz, row2.yz), most = max(row1.yz, row2.yz);
-  return min(max(dot(rows, x), min(least.x, least.y)), max(most.x, most.y));
+  return blend_alpha_rows(row0, row1, row2, row3, x, y);
 #endif
 }
