@@ -21,7 +21,8 @@ run_packages=(
 test_packages=(libgtest-dev clang clang-format python3 python3-numpy python3-cffi chromium
   help2man                               # manual pages
   mesa-opencl-icd                        # rusticl, a second OpenCL for the processor
-  mesa-vulkan-drivers libvulkan-dev      # lavapipe, whose memory OpenGL and OpenCL import; its headers, to compare with
+  mesa-vulkan-drivers libvulkan-dev      # lavapipe, whose memory OpenGL and OpenCL import; its headers and loader
+  glslang-tools                          # shaders of docs/examples/vulkan.cpp
   xvfb xdotool openbox                   # a display, a keyboard and a window manager for the window
 )
 optional_test_packages=(

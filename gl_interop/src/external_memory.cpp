@@ -3,45 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "cl_handle.h"
+#include "probe.h"
 #include "quincunx/advanced/log.h"
 #include "state_scope.h"
 
 namespace quincunx::gl {
 namespace {
-
-constexpr std::size_t kPageBytes = 4096;
-
-// Waits for a command that may hang for ever.
-void wait_for(const ClEvent& event, std::chrono::milliseconds limit) {
-  const auto end = std::chrono::steady_clock::now() + limit;
-  for (;;) {
-    cl_int state = CL_QUEUED;
-    check_cl(clGetEventInfo(event.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof(state), &state, nullptr),
-             "clGetEventInfo");
-    if (state == CL_COMPLETE) return;
-    if (state < 0) check_cl(state, "a command of the probe");
-    if (std::chrono::steady_clock::now() > end) {
-      throw InteropError(
-          fmt::format("a semaphore that OpenGL signalled did not reach OpenCL within {} ms", limit.count()));
-    }
-    std::this_thread::sleep_for(std::chrono::microseconds(50));
-  }
-}
-
-std::vector<std::uint8_t> pattern(std::size_t bytes, std::uint32_t seed) {
-  std::vector<std::uint8_t> made(bytes);
-  for (std::uint8_t& byte : made) {
-    seed = seed * 1664525u + 1013904223u;
-    byte = static_cast<std::uint8_t>(seed >> 24);
-  }
-  return made;
-}
 
 void copy_buffer(GLuint from, std::size_t from_offset, GLuint to, std::size_t to_offset, std::size_t bytes) {
   const BindingScope read(BindingScope::bind_buffer, GL_COPY_READ_BUFFER, GL_COPY_READ_BUFFER_BINDING, from);
@@ -96,7 +67,7 @@ void BufferReader::release() {
 }
 
 DeviceOrder::Direction DeviceOrder::make(const VulkanDevice& vulkan, const Device& device) {
-  auto [for_gl, for_cl, kept] = vulkan.semaphore();
+  auto [for_gl, for_cl, kept, semaphore] = vulkan.semaphore();
   Direction made;
   made.kept = std::move(kept);
   made.gl = Handle<GlSemaphoreTraits>::create();
@@ -138,9 +109,10 @@ void DeviceOrder::gl_waits(GLuint buffer) {
 
 ExternalBuffer Exporter::allocate(const Device& device, std::size_t bytes) const {
   ExternalBuffer made;
-  const std::size_t whole = bytes + (mapped_ ? kPageBytes : 0);
   made.memory =
-      vulkan_->allocate(whole, mapped_ ? VulkanDevice::Place::kMapped : VulkanDevice::Place::kDevice);
+      vulkan_->allocate(bytes, mapped_ ? VulkanDevice::Place::kMapped : VulkanDevice::Place::kDevice);
+  made.start = made.memory->start();
+  made.bytes = made.memory->mapped();
 
   made.memory_object = Handle<MemoryObjectTraits>::create();
   if (made.memory->dedicated()) {
@@ -155,25 +127,12 @@ ExternalBuffer Exporter::allocate(const Device& device, std::size_t bytes) const
   made.gl = Buffer::create();
   {
     const BindingScope bound = BindingScope::buffer(made.gl.get());
-    glBufferStorageMemEXT(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(whole), made.memory_object.get(), 0);
+    glBufferStorageMemEXT(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(made.start + bytes),
+                          made.memory_object.get(), 0);
   }
   check_gl("glBufferStorageMemEXT");
 
-  ExternalMemory external = {.bytes = bytes, .device = uuid_};
-  Fd for_cl;
-  if (mapped_) {
-    auto* const start = static_cast<std::uint8_t*>(made.memory->mapped());
-    made.start = (kPageBytes - reinterpret_cast<std::uintptr_t>(start) % kPageBytes) % kPageBytes;
-    made.bytes = start + made.start;
-    external.handle = MemoryHandle::kMapped;
-    external.mapped = made.bytes;
-  } else {
-    for_cl = made.memory->fd();
-    external.fd = for_cl.get();
-  }
-  auto imported = device.import_memory(external);
-  check_status(imported.status());
-  made.cl = std::move(imported).value();
+  made.cl = made.memory->import_to(device, bytes);
   return made;
 }
 
@@ -182,49 +141,31 @@ std::optional<DeviceOrder> Exporter::order(const Device& device) const {
   return DeviceOrder(*vulkan_, device);
 }
 
-// On a queue of its own: one that waits for ever would hold all frames.
 void Exporter::probe(const Device& device) const {
-  constexpr std::size_t kBytes = 16384;
-  constexpr std::chrono::seconds kLimit(2);
-  cl_int code = CL_SUCCESS;
-  const cl_command_queue queue = clCreateCommandQueue(device.context(), device.id(), 0, &code);
-  check_cl(code, "clCreateCommandQueue");
-  auto borrowed = Device::borrow(device.context(), device.id(), queue);
-  clReleaseCommandQueue(queue);
-  check_status(borrowed.status());
-  const Device own = borrowed.value();
-
-  ExternalBuffer shared = allocate(own, kBytes);
+  const Device own = probe_device(device);
+  ExternalBuffer shared = allocate(own, kProbeBytes);
   std::optional<DeviceOrder> order = this->order(own);
-  const std::vector<std::uint8_t> from_gl = pattern(kBytes, 1);
-  const std::vector<std::uint8_t> from_cl = pattern(kBytes, 2);
-  auto seen = std::make_unique<std::vector<std::uint8_t>>(kBytes);
+  const std::vector<std::uint8_t> from_gl = probe_bytes(1), from_cl = probe_bytes(2);
+  std::vector<std::uint8_t> seen;
 
   const Buffer source = Buffer::create();
   {
     const BindingScope bound = BindingScope::buffer(source.get());
-    glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(kBytes), from_gl.data(), GL_STATIC_COPY);
+    glBufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(kProbeBytes), from_gl.data(), GL_STATIC_COPY);
   }
-  copy_buffer(source.get(), 0, shared.gl.get(), shared.start, kBytes);
+  copy_buffer(source.get(), 0, shared.gl.get(), shared.start, kProbeBytes);
   order ? order->gl_done(shared.gl.get()) : glFinish();
   if (order) order->cl_waits();
   check_status(shared.cl->acquire());
-  cl_event event = nullptr;
-  check_cl(clEnqueueReadBuffer(own.queue(), shared.cl->memory(), CL_FALSE, 0, kBytes, seen->data(), 0,
-                               nullptr, &event),
-           "clEnqueueReadBuffer");
-  const ClEvent read = ClEvent::adopt(event);
   try {
-    check_cl(clFlush(own.queue()), "clFlush");
-    wait_for(read, kLimit);
+    seen = read_probe(own.queue(), shared.cl->memory(), "OpenGL");
   } catch (...) {
-    static_cast<void>(seen.release());  // it may be written yet, and the memory read
     static_cast<void>(new ExternalBuffer(std::move(shared)));
     throw;
   }
-  if (*seen != from_gl) throw InteropError("OpenCL read other bytes than OpenGL wrote");
+  if (seen != from_gl) throw InteropError("OpenCL read other bytes than OpenGL wrote");
 
-  check_cl(clEnqueueWriteBuffer(own.queue(), shared.cl->memory(), CL_TRUE, 0, kBytes, from_cl.data(), 0,
+  check_cl(clEnqueueWriteBuffer(own.queue(), shared.cl->memory(), CL_TRUE, 0, kProbeBytes, from_cl.data(), 0,
                                 nullptr, nullptr),
            "clEnqueueWriteBuffer");
   check_status(shared.cl->release());
@@ -232,7 +173,7 @@ void Exporter::probe(const Device& device) const {
   check_cl(clFinish(own.queue()), "clFinish");
   if (order) order->gl_waits(shared.gl.get());
   BufferReader reader;
-  const std::uint8_t* const back = reader.read(shared.gl.get(), shared.start, kBytes);
+  const std::uint8_t* const back = reader.read(shared.gl.get(), shared.start, kProbeBytes);
   check_gl("reading the probe's buffer");
   const bool same = back != nullptr && std::equal(from_cl.begin(), from_cl.end(), back);
   reader.release();
@@ -244,17 +185,17 @@ std::shared_ptr<const Exporter> Exporter::create(const Device& device, bool sema
     throw InteropError("OpenGL does not offer GL_EXT_memory_object_fd");
   const DeviceInfo& info = device.info();
   std::shared_ptr<Exporter> made(new Exporter);
-  made->uuid_ = gl_device_uuid();
+  const DeviceUuid uuid = gl_device_uuid();
   made->mapped_ = !info.imports_opaque_fds;
   if (made->mapped_ && !info.host_unified_memory) {
     throw InteropError(fmt::format(
         "'{}' does not offer cl_khr_external_memory_opaque_fd, and its memory is not the host's", info.name));
   }
-  if (!made->mapped_ && info.uuid != made->uuid_) {
+  if (!made->mapped_ && info.uuid != uuid) {
     throw InteropError(fmt::format("'{}' is the device {}, and OpenGL draws on the device {}", info.name,
-                                   uuid_text(info.uuid), uuid_text(made->uuid_)));
+                                   uuid_text(info.uuid), uuid_text(uuid)));
   }
-  made->vulkan_ = &VulkanDevice::open(made->uuid_);
+  made->vulkan_ = &VulkanDevice::open(uuid);
   made->semaphores_ = semaphores && info.imports_semaphores && made->vulkan_->has_semaphores() &&
                       epoxy_has_gl_extension("GL_EXT_semaphore_fd");
   try {

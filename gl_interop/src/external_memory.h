@@ -81,7 +81,6 @@ class Exporter {
   void probe(const Device& device) const;
 
   const VulkanDevice* vulkan_ = nullptr;
-  DeviceUuid uuid_ = {};
   bool mapped_ = false;
   bool semaphores_ = false;
   std::string reason_;

@@ -12,19 +12,6 @@
 #include "state_scope.h"
 
 namespace quincunx::gl {
-namespace {
-
-// Drivers use host memory in place only where it starts on a page; PoCL's wide loads want 128 bytes. GL
-// promises no more than 64.
-constexpr std::size_t kPageBytes = 4096;
-
-std::size_t bytes_to_page(const void* address) {
-  const auto value = reinterpret_cast<std::uintptr_t>(address);
-  return (kPageBytes - value % kPageBytes) % kPageBytes;
-}
-
-}  // namespace
-
 std::size_t PixelMemory::whole_pages(std::size_t bytes) {
   return (bytes + kPageBytes - 1) / kPageBytes * kPageBytes;
 }

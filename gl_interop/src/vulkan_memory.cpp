@@ -132,6 +132,21 @@ std::string VulkanDevice::open_through(const std::string& library, const char* e
     instance_ = nullptr;
     return fmt::format("vkCreateInstance failed: Vulkan error {}", code);
   }
+  if (std::string why = find_functions(get); !why.empty()) return why;
+  const vk::InstanceFunctions& f = instance_functions_;
+
+  std::uint32_t count = 0;
+  f.EnumeratePhysicalDevices(instance_, &count, nullptr);
+  std::vector<vk::PhysicalDevice> devices(count);
+  if (f.EnumeratePhysicalDevices(instance_, &count, devices.data()) < 0) count = 0;
+  for (std::uint32_t i = 0; i < count && physical_ == nullptr; ++i) {
+    if (uuid_of(devices[i]) == uuid) physical_ = devices[i];
+  }
+  if (physical_ == nullptr) return fmt::format("none of its {} devices is OpenGL's", count);
+  return make_device();
+}
+
+std::string VulkanDevice::find_functions(vk::GetInstanceProcAddr get) {
   vk::InstanceFunctions& f = instance_functions_;
   const bool whole =
       find(get(instance_, "vkEnumeratePhysicalDevices"), &f.EnumeratePhysicalDevices) &&
@@ -142,21 +157,29 @@ std::string VulkanDevice::open_through(const std::string& library, const char* e
            &f.GetPhysicalDeviceExternalBufferProperties) &&
       find(get(instance_, "vkCreateDevice"), &f.CreateDevice) &&
       find(get(instance_, "vkGetDeviceProcAddr"), &f.DeviceProcAddr);
-  if (!whole) return "it is older than Vulkan 1.1";
+  return whole ? "" : "it is older than Vulkan 1.1";
+}
 
-  std::uint32_t count = 0;
-  f.EnumeratePhysicalDevices(instance_, &count, nullptr);
-  std::vector<vk::PhysicalDevice> devices(count);
-  if (f.EnumeratePhysicalDevices(instance_, &count, devices.data()) < 0) count = 0;
-  for (std::uint32_t i = 0; i < count && physical_ == nullptr; ++i) {
-    vk::IdProperties id = {};
-    vk::PhysicalDeviceProperties2 properties = {};
-    properties.head.next = &id;
-    f.GetPhysicalDeviceProperties2(devices[i], &properties);
-    if (std::memcmp(id.device_uuid, uuid.data(), uuid.size()) == 0) physical_ = devices[i];
-  }
-  if (physical_ == nullptr) return fmt::format("none of its {} devices is OpenGL's", count);
-  return make_device();
+DeviceUuid VulkanDevice::uuid_of(vk::PhysicalDevice device) const {
+  vk::IdProperties id = {};
+  vk::PhysicalDeviceProperties2 properties = {};
+  properties.head.next = &id;
+  instance_functions_.GetPhysicalDeviceProperties2(device, &properties);
+  DeviceUuid uuid;
+  std::copy_n(id.device_uuid, uuid.size(), uuid.begin());
+  return uuid;
+}
+
+std::unique_ptr<const VulkanDevice> VulkanDevice::adopt(vk::GetInstanceProcAddr get, vk::Instance instance,
+                                                        vk::PhysicalDevice physical, vk::Device device) {
+  std::unique_ptr<VulkanDevice> adopted(new VulkanDevice);
+  adopted->instance_ = instance;
+  adopted->physical_ = physical;
+  adopted->device_ = device;
+  std::string why = adopted->find_functions(get);
+  if (why.empty()) why = adopted->find_device_functions();
+  if (!why.empty()) throw InteropError(fmt::format("Vulkan cannot be used: {}", why));
+  return adopted;
 }
 
 std::string VulkanDevice::make_device() {
@@ -183,17 +206,23 @@ std::string VulkanDevice::make_device() {
     device_ = nullptr;
     return fmt::format("vkCreateDevice failed: Vulkan error {}", code);
   }
-  const auto get = [&](const char* name) { return instance_functions_.DeviceProcAddr(device_, name); };
+  return find_device_functions();
+}
+
+std::string VulkanDevice::find_device_functions() {
+  const auto get = [&](const char* name) { return function(name); };
   vk::DeviceFunctions& f = functions_;
   const bool whole =
       find(get("vkCreateBuffer"), &f.CreateBuffer) && find(get("vkDestroyBuffer"), &f.DestroyBuffer) &&
       find(get("vkGetBufferMemoryRequirements2"), &f.GetBufferMemoryRequirements2) &&
       find(get("vkAllocateMemory"), &f.AllocateMemory) && find(get("vkFreeMemory"), &f.FreeMemory) &&
       find(get("vkBindBufferMemory"), &f.BindBufferMemory) && find(get("vkMapMemory"), &f.MapMemory) &&
-      find(get("vkGetMemoryFdKHR"), &f.GetMemoryFd) && find(get("vkCreateSemaphore"), &f.CreateSemaphore) &&
+      find(get("vkCreateSemaphore"), &f.CreateSemaphore) &&
       find(get("vkDestroySemaphore"), &f.DestroySemaphore);
   if (!whole) return "its device lacks functions of Vulkan 1.1";
-  if (wanted.size() > 1) find(get("vkGetSemaphoreFdKHR"), &f.GetSemaphoreFd);
+  if (!find(get("vkGetMemoryFdKHR"), &f.GetMemoryFd))
+    return "its device was made without VK_KHR_external_memory_fd";
+  find(get("vkGetSemaphoreFdKHR"), &f.GetSemaphoreFd);
   return {};
 }
 
@@ -217,7 +246,9 @@ std::unique_ptr<VulkanDevice::Memory> VulkanDevice::allocate(std::size_t bytes, 
 
   std::unique_ptr<Memory> made(new Memory(*this));
   const vk::ExternalMemoryBufferCreateInfo handles;
-  const vk::BufferCreateInfo info = {.head = {12, &handles}, .size = bytes, .usage = kBufferUsage};
+  const vk::BufferCreateInfo info = {.head = {12, &handles},
+                                     .size = bytes + (place == Place::kMapped ? kPageBytes : 0),
+                                     .usage = kBufferUsage};
   check_vk(functions_.CreateBuffer(device_, &info, nullptr, &made->buffer_), "vkCreateBuffer");
   const vk::BufferMemoryRequirementsInfo2 of = {.buffer = made->buffer_};
   vk::MemoryDedicatedRequirements dedicated = {};
@@ -236,8 +267,10 @@ std::unique_ptr<VulkanDevice::Memory> VulkanDevice::allocate(std::size_t bytes, 
   check_vk(functions_.AllocateMemory(device_, &wanted, nullptr, &made->memory_), "vkAllocateMemory");
   check_vk(functions_.BindBufferMemory(device_, made->buffer_, made->memory_, 0), "vkBindBufferMemory");
   if (place == Place::kMapped) {
-    check_vk(functions_.MapMemory(device_, made->memory_, 0, vk::kWholeSize, 0, &made->mapped_),
-             "vkMapMemory");
+    void* at = nullptr;
+    check_vk(functions_.MapMemory(device_, made->memory_, 0, vk::kWholeSize, 0, &at), "vkMapMemory");
+    made->start_ = bytes_to_page(at);
+    made->mapped_ = static_cast<std::uint8_t*>(at) + made->start_;
   }
   return made;
 }
@@ -254,12 +287,28 @@ Fd VulkanDevice::Memory::fd() const {
   return Fd(fd);
 }
 
+SharedMemory VulkanDevice::Memory::import_to(const Device& device, std::size_t bytes) const {
+  ExternalMemory external = {.bytes = bytes, .device = device_.uuid()};
+  Fd exported;
+  if (mapped_ != nullptr) {
+    external.handle = MemoryHandle::kMapped;
+    external.mapped = mapped_;
+  } else {
+    exported = fd();
+    external.fd = exported.get();
+  }
+  auto imported = device.import_memory(external);
+  check_status(imported.status());
+  return std::move(imported).value();
+}
+
 VulkanDevice::SharedSemaphore VulkanDevice::semaphore() const {
   const vk::ExportSemaphoreCreateInfo exported;
   const vk::SemaphoreCreateInfo info = {.head = {9, &exported}};
   vk::Semaphore made = 0;
   check_vk(functions_.CreateSemaphore(device_, &info, nullptr, &made), "vkCreateSemaphore");
   SharedSemaphore shared;
+  shared.semaphore = made;
   shared.kept = {nullptr, [this, made](void*) { functions_.DestroySemaphore(device_, made, nullptr); }};
   for (Fd* to : {&shared.first, &shared.second}) {
     const vk::SemaphoreGetFdInfo of = {.semaphore = made};

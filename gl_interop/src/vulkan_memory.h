@@ -8,10 +8,19 @@
 #include <string>
 #include <utility>
 
-#include "quincunx/advanced/external.h"
+#include "quincunx/device.h"
 #include "vulkan.h"
 
 namespace quincunx::gl {
+
+// Drivers use host memory in place only where it starts on a page; PoCL's wide loads want 128 bytes. GL promises no
+// more than 64.
+constexpr std::size_t kPageBytes = 4096;
+
+inline std::size_t bytes_to_page(const void* address) {
+  const auto value = reinterpret_cast<std::uintptr_t>(address);
+  return (kPageBytes - value % kPageBytes) % kPageBytes;
+}
 
 // Owns a file descriptor.
 class Fd {
@@ -34,12 +43,15 @@ class Fd {
   int fd_ = -1;
 };
 
-// Vulkan's device of a UUID, through the loader, or the drivers themselves where no loader is installed. It stays until
-// the process ends: with an instance of NVIDIA's (580.159) EGL's display goes, and with that OpenGL's context.
 class VulkanDevice {
  public:
-  // Opens it once. Throws InteropError, which says what kept it. Thread-safe.
+  // Opens Vulkan's device of a UUID, once, through the loader, or the drivers themselves where no loader is installed.
+  // It stays until the process ends: with an instance of NVIDIA's (580.159) EGL's display goes, and with that OpenGL's
+  // context. Throws InteropError, which says what kept it. Thread-safe.
   static const VulkanDevice& open(const DeviceUuid& uuid);
+  // The caller's, who keeps them for as long. Throws InteropError where they cannot export memory.
+  static std::unique_ptr<const VulkanDevice> adopt(vk::GetInstanceProcAddr get, vk::Instance instance,
+                                                   vk::PhysicalDevice physical, vk::Device device);
   VulkanDevice(const VulkanDevice&) = delete;
   VulkanDevice& operator=(const VulkanDevice&) = delete;
 
@@ -49,10 +61,14 @@ class VulkanDevice {
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
-    std::size_t size() const { return size_; }     // as it was allocated, which importers must be told
-    bool dedicated() const { return dedicated_; }  // importers must be told that, too
-    void* mapped() const { return mapped_; }       // null where it was not asked for
-    Fd fd() const;                                 // another one for each importer
+    vk::Buffer buffer() const { return buffer_; }
+    std::size_t size() const { return size_; }        // as it was allocated, which importers must be told
+    bool dedicated() const { return dedicated_; }     // importers must be told that, too
+    std::uint8_t* mapped() const { return mapped_; }  // a page's start; null where it was not asked for
+    std::size_t start() const { return start_; }      // of what is mapped, in the buffer
+    Fd fd() const;                                    // another one for each importer
+    // `bytes` from start() on, for OpenCL. Throws InteropError.
+    SharedMemory import_to(const Device& device, std::size_t bytes) const;
 
    private:
     friend class VulkanDevice;
@@ -62,24 +78,34 @@ class VulkanDevice {
     vk::DeviceMemory memory_ = 0;
     std::size_t size_ = 0;
     bool dedicated_ = false;
-    void* mapped_ = nullptr;
+    std::uint8_t* mapped_ = nullptr;
+    std::size_t start_ = 0;
   };
   enum class Place { kDevice, kMapped };  // kMapped: the host's, and mapped
-  // At least `bytes`. Throws InteropError.
+  // At least `bytes` from start() on. Throws InteropError.
   std::unique_ptr<Memory> allocate(std::size_t bytes, Place place) const;
 
   bool has_semaphores() const { return functions_.GetSemaphoreFd != nullptr; }
-  // A binary semaphore, not signalled, for two importers; `kept` outlives both.
+  // A binary semaphore, not signalled, for two importers, or one and Vulkan itself; `kept` outlives all uses.
   struct SharedSemaphore {
     Fd first, second;
     std::shared_ptr<void> kept;
+    vk::Semaphore semaphore;
   };
   SharedSemaphore semaphore() const;  // throws InteropError
+
+  DeviceUuid uuid() const { return uuid_of(physical_); }
+  vk::VoidFunction function(const char* name) const {
+    return instance_functions_.DeviceProcAddr(device_, name);
+  }
 
  private:
   VulkanDevice() = default;
   std::string open_through(const std::string& library, const char* entry, const DeviceUuid& uuid);
+  std::string find_functions(vk::GetInstanceProcAddr get);  // "" or what is in the way
   std::string make_device();
+  std::string find_device_functions();
+  DeviceUuid uuid_of(vk::PhysicalDevice device) const;
   std::uint32_t memory_type(std::uint32_t allowed, Place place) const;
 
   vk::Instance instance_ = nullptr;

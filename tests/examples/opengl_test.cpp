@@ -2,10 +2,10 @@
 // docs/examples/opengl.cpp on a display of its own: it runs, and its picture is what the library is for.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 
+#include "picture_file.h"
 #include "program_run.h"
 #include "skip.h"
 #include "xvfb.h"
@@ -30,26 +30,12 @@ class OpenglExample : public ::testing::Test {
   std::string picture(const std::string& scale, const std::string& method) {
     const ProgramResult result = run("30 {}/picture.ppm " + scale + " " + method);
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    const std::string file = read_file(folder_.file("picture.ppm"));
-    const std::string head = "P6 960 540 255\n";
-    EXPECT_EQ(file.substr(0, head.size()), head);
-    EXPECT_EQ(file.size(), head.size() + 960 * 540 * 3);
-    return file.substr(std::min(head.size(), file.size()));
+    return ppm_texels(read_file(folder_.file("picture.ppm")), {960, 540});
   }
 
   TemporaryFolder folder_;
   std::unique_ptr<Xvfb> server_;
 };
-
-double mean_square_error(const std::string& a, const std::string& b) {
-  EXPECT_EQ(a.size(), b.size());
-  double sum = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    const double difference = static_cast<unsigned char>(a[i]) - static_cast<unsigned char>(b[i]);
-    sum += difference * difference;
-  }
-  return sum / static_cast<double>(a.size());
-}
 
 // Four samples a pixel are the truth. Measured: 102 against 333 codes squared.
 TEST_F(OpenglExample, ItsPictureHasHalfTheErrorOfBilinearAtMost) {

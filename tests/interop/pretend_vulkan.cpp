@@ -3,6 +3,7 @@
 // opaque fds (VK_KHR_external_semaphore_fd), which lavapipe does not: they are eventfds. And with a device or an
 // instance OpenGL's context goes, as with NVIDIA's.
 #include <dlfcn.h>
+#include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -12,6 +13,10 @@
 #include <vector>
 
 #include "vulkan.h"
+#define VK_NO_PROTOTYPES
+#if __has_include(<vulkan/vulkan_core.h>)
+#include <vulkan/vulkan_core.h>
+#endif
 
 using namespace quincunx::gl;
 
@@ -103,7 +108,55 @@ void destroy_instance(vk::Instance, const void*) {
   end_context();
 }
 
+vk::Device g_device = nullptr;  // of the last question
+
+#if __has_include(<vulkan/vulkan_core.h>)
+// Eventfds, which stand behind the caller's own semaphores, are waited for before and signalled after the work.
+VkResult queue_submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo* infos, VkFence fence) {
+  constexpr int kLongestMs = 10'000;
+  const auto is_ours = [](VkSemaphore semaphore) {
+    return reinterpret_cast<std::uintptr_t>(semaphore) < 65536;
+  };
+  const auto fd_of = [](VkSemaphore semaphore) {
+    return static_cast<int>(reinterpret_cast<std::uintptr_t>(semaphore));
+  };
+  VkSubmitInfo info = *infos;
+  for (; info.waitSemaphoreCount > 0 && is_ours(info.pWaitSemaphores[info.waitSemaphoreCount - 1]);
+       --info.waitSemaphoreCount) {
+    pollfd ready = {
+        .fd = fd_of(info.pWaitSemaphores[info.waitSemaphoreCount - 1]), .events = POLLIN, .revents = 0};
+    std::uint64_t value = 0;
+    if (poll(&ready, 1, kLongestMs) != 1 || read(ready.fd, &value, sizeof(value)) != sizeof(value))
+      return VK_ERROR_DEVICE_LOST;
+  }
+  while (info.signalSemaphoreCount > 0 && is_ours(info.pSignalSemaphores[info.signalSemaphoreCount - 1]))
+    --info.signalSemaphoreCount;
+  VkTimelineSemaphoreSubmitInfo timeline;
+  if (info.pNext != nullptr) {
+    timeline = *static_cast<const VkTimelineSemaphoreSubmitInfo*>(info.pNext);
+    timeline.waitSemaphoreValueCount = info.waitSemaphoreCount;
+    timeline.signalSemaphoreValueCount = info.signalSemaphoreCount;
+    info.pNext = &timeline;
+  }
+  const auto real_submit =
+      reinterpret_cast<PFN_vkQueueSubmit>(of_instance<vk::VoidFunction(vk::Device, const char*)>(
+          "vkGetDeviceProcAddr")(g_device, "vkQueueSubmit"));
+  const auto wait_idle =
+      reinterpret_cast<PFN_vkQueueWaitIdle>(of_instance<vk::VoidFunction(vk::Device, const char*)>(
+          "vkGetDeviceProcAddr")(g_device, "vkQueueWaitIdle"));
+  const VkResult result = real_submit(queue, count, &info, fence);
+  if (info.signalSemaphoreCount < infos->signalSemaphoreCount) wait_idle(queue);
+  const std::uint64_t one = 1;
+  for (std::uint32_t i = info.signalSemaphoreCount; i < infos->signalSemaphoreCount; ++i) {
+    if (write(fd_of(infos->pSignalSemaphores[i]), &one, sizeof(one)) != sizeof(one))
+      return VK_ERROR_DEVICE_LOST;
+  }
+  return result;
+}
+#endif
+
 vk::VoidFunction of_device(vk::Device device, const char* name) {
+  g_device = device;
   const std::string_view wanted = name;
   if (wanted == "vkDestroyDevice") return reinterpret_cast<vk::VoidFunction>(&destroy_device);
   const vk::VoidFunction its_own = of_instance<decltype(of_device)>("vkGetDeviceProcAddr")(device, name);
@@ -111,6 +164,9 @@ vk::VoidFunction of_device(vk::Device device, const char* name) {
   if (wanted == "vkCreateSemaphore") return reinterpret_cast<vk::VoidFunction>(&create_semaphore);
   if (wanted == "vkDestroySemaphore") return reinterpret_cast<vk::VoidFunction>(&destroy_semaphore);
   if (wanted == "vkGetSemaphoreFdKHR") return reinterpret_cast<vk::VoidFunction>(&get_semaphore_fd);
+#if __has_include(<vulkan/vulkan_core.h>)
+  if (wanted == "vkQueueSubmit") return reinterpret_cast<vk::VoidFunction>(&queue_submit);
+#endif
   return its_own;
 }
 

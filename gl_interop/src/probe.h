@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// What a probe of shared memory needs: bytes to carry, and a wait that ends.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cl_handle.h"
+#include "quincunx/device.h"
+
+namespace quincunx::gl {
+
+constexpr std::size_t kProbeBytes = 16384;
+
+std::vector<std::uint8_t> probe_bytes(std::uint32_t seed);
+
+// On a queue of its own: one that waits for ever would hold all frames. Throws InteropError.
+Device probe_device(const Device& device);
+
+// Returns the first kProbeBytes of `memory`, once `peer`, "OpenGL", has signalled. Throws InteropError where that does
+// not come; the queue may then wait for it yet, and use the memory.
+std::vector<std::uint8_t> read_probe(cl_command_queue queue, cl_mem memory, const char* peer);
+
+}  // namespace quincunx::gl
