@@ -33,6 +33,18 @@ TEST(CostModel, LearnsTheFixedPartFromPairs) {
   EXPECT_EQ(model.fixed_part(), before);
 }
 
+TEST(CostModel, APairFurtherApartThanAnyLadderIsForgotten) {
+  CostModel model(0.25);
+  model.learn(1, 10);
+  model.learn(1e6, 11);
+  EXPECT_GT(model.fixed_part(), 0.89);
+  for (int pair = 0; pair < 20; ++pair) {
+    model.learn(1, 20);
+    model.learn(0.5, 12.5);
+  }
+  EXPECT_NEAR(model.fixed_part(), 0.25, 0.001);
+}
+
 TEST(CostModel, DoubtAsksForLessAndVanishes) {
   CostModel model(0.25);
   // Half the work from area 1, with b = .4 in place of .25: (.5 - .4) / .6.

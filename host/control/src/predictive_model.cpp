@@ -16,6 +16,7 @@ namespace {
 constexpr double kLargestFixedPart = 0.9;
 constexpr double kLeastDifference = 0.03;  // smaller differences of two areas tell nothing
 constexpr double kDecay = 0.8;             // factor for older pairs, per pair
+constexpr double kHeaviestPair = 1;        // as one an output apart: more would take too many pairs to forget
 constexpr double kPriorWeight = 0.004;     // as much as one pair .063 apart
 constexpr double kDoubt = 0.15;            // added to b as long as it is a guess
 constexpr double kDoubtFade = 20;          // per weight of pairs: half gone after one pair .19 apart
@@ -80,7 +81,7 @@ void CostModel::learn(double area, double time) {
     const double slope = (time - last_time_) / difference;
     const double level = time + slope * (1 - area);
     if (slope > 0 && level > 0) {
-      const double weight = difference * difference;
+      const double weight = std::min(difference * difference, kHeaviestPair);
       weighted_sum_ = kDecay * weighted_sum_ + weight * std::clamp(1 - slope / level, 0.0, kLargestFixedPart);
       weights_ = kDecay * weights_ + weight;
       fixed_part_ = (weighted_sum_ + kPriorWeight * prior_) / (weights_ + kPriorWeight);
