@@ -122,12 +122,12 @@ Target make_target(const Vulkan& vulkan, vk::Format format, vk::ImageUsageFlags 
 
 vk::Pipeline make_pipeline(const Vulkan& vulkan, vk::PipelineLayout layout) {
   using Stage = vk::ShaderStageFlagBits;
-  const auto module = [&](const auto& words) {
+  const auto shader = [&](const auto& words) {
     return vulkan.device.createShaderModule({.codeSize = sizeof(words), .pCode = words});
   };
   const std::array<vk::PipelineShaderStageCreateInfo, 2> stages = {
-      {{.stage = Stage::eVertex, .module = module(kVertex), .pName = "main"},
-       {.stage = Stage::eFragment, .module = module(kFragment), .pName = "main"}}};
+      {{.stage = Stage::eVertex, .module = shader(kVertex), .pName = "main"},
+       {.stage = Stage::eFragment, .module = shader(kFragment), .pName = "main"}}};
   const vk::PipelineVertexInputStateCreateInfo no_vertices;
   constexpr auto kTriangles = vk::PrimitiveTopology::eTriangleList;
   const vk::PipelineInputAssemblyStateCreateInfo triangles = {.topology = kTriangles};
