@@ -127,6 +127,12 @@ void check_image(const char* name, const VulkanImage& image, PixelFormat format,
   }
 }
 
+struct Direction {
+  VulkanDevice::SharedSemaphore vulkan;
+  std::optional<Semaphore> cl;
+  bool signalled = false;  // and not waited for yet
+};
+
 // Memory that both have, and who waits for whom.
 struct Crossing {
   std::unique_ptr<VulkanDevice::Memory> memory;
@@ -135,12 +141,7 @@ struct Crossing {
   ClEvent released;  // by OpenCL, where the host waits for it
   VkCommandBuffer commands = nullptr;
   VkFence copied = VK_NULL_HANDLE;
-  bool copying = false;  // `copied` will be signalled
-  struct Direction {
-    VulkanDevice::SharedSemaphore vulkan;
-    std::optional<Semaphore> cl;
-    bool signalled = false;  // and not waited for yet
-  };
+  bool copying = false;                       // `copied` will be signalled
   std::optional<Direction> to_cl, to_vulkan;  // none: the host waits
 
   VkBuffer buffer() const { return as<VkBuffer>(memory->buffer()); }
