@@ -84,6 +84,12 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
 #if ALPHA
     // What nothing is known of, and no sample shows, is as transparent as what hides it.
     known_alpha = select(known_alpha, last_channels(samples), are_valid(samples) & (fetched.confidence == 0.0f));
+    const LayerSources* from = &fetched_both.far.from;
+    const Positions from_x = {from->x, from->fraction_x}, from_y = {from->y, from->fraction_y};
+    known_alpha = follow_alphas(colour, &frame, past.far, past.alpha, nearest_texels(from_x), nearest_texels(from_y),
+                                nearest.x, nearest.y, known_alpha, mask_not(pixels.is_split));
+    known_alpha = follow_layer_alphas(kFarLayer, pixels.is_split, &pixels, colour, depth, depth_layout, &frame,
+                                      &nearest, known_alpha);
 #endif
     LaneFloat taken = far_samples(&pixels);
     if (light[tile_index].holds_back)

@@ -208,6 +208,19 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
 
       // Load the samples, and find outliers to hold back.
       LaneTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
+#if ALPHA
+      const LaneMask differs = mask_not(are_valid(samples) & (last_channels(samples) == known_alpha));
+      if (any_lane(differs)) {
+        LaneInt from_x = x - tile.step_x + LANE_NUMBERS, from_y = (LaneInt)(y - tile.step_y);
+        if (path == kResampled) {
+          const SourcePlaces from = source_places(previous_tiles, &params, tile, &motion, x, y);
+          from_x = nearest_texels(from.x);
+          from_y = nearest_texels(from.y);
+        }
+        known_alpha = follow_alphas(colour, &frame, layer, plane, from_x, from_y, nearest.x, nearest.y, known_alpha,
+                                    differs);
+      }
+#endif
       LaneMask held = mask_of(false);
       if (holds_back) held = are_held_back(known, evidence.confidence, samples);
 

@@ -17,7 +17,6 @@ namespace quincunx::reference {
 namespace {
 
 constexpr double kDisplaySharpness = -.75;  // Keys' a, as of temporal_display
-constexpr double kShownCoverageMin = .02;   // from which the near layer has a colour
 
 template <typename Real>
 LayerTap<Real> near_at_centre(const LayerHistory& history, const LayerTile& tile, int x, int y) {

@@ -192,11 +192,14 @@ FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReproject
                                    int y) {
   const auto from = history_place<Real>(in, tile, reprojection, x, y);
   FetchedHistory<Real> fetched;
+  fetched.texel = from.texel;
   if (from.is_copied) {
     fetched.known.texel = as<Real>(in.history_clamped(from.texel[0], from.texel[1]));
     fetched.known.alpha = in.alpha_clamped(from.texel[0], from.texel[1]);
     return fetched;
   }
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    fetched.texel[axis] += from.fraction[axis] >= .5 ? 1 : 0;
   fetched.known = sample_history(in, options.taps, from.texel[0], from.texel[1], from.fraction);
   if (is_outside(in, from)) fetched.known.texel[3] = 0;
   fetched.between = between_texels(from.fraction);

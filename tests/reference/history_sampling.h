@@ -29,7 +29,8 @@ Real between_texels(const std::array<Real, 2>& fraction) {
 template <typename Real>
 struct FetchedHistory {
   HistoryTexel<Real> known = {};
-  Real between = 0;  // how far between texels it was read: 0 at a texel's centre, 1 midway
+  std::array<int, 2> texel = {};  // the nearest one, which may lie outside
+  Real between = 0;               // how far between texels it was read: 0 at a texel's centre, 1 midway
 };
 
 // History of output pixel (x, y), whose tile is `tile` and whose nearest sample has `reprojection`.

@@ -191,6 +191,7 @@ FetchedLayer<Real> fetch_layer(const LayerHistory& history, LayerWish wish, cons
       is_copied = is_copied && abs(from[axis] - nearest[axis]) < kCopiedOffsetMax;
     }
     if (is_copied) {
+      fetched.texel = nearest;
       const auto tap =
           tap_of<Real>(history, wish, std::min(nearest[0], size[0] - 1), std::min(nearest[1], size[1] - 1));
       if (tap.is_valid) fetched.value = tap.value;
@@ -204,6 +205,7 @@ FetchedLayer<Real> fetch_layer(const LayerHistory& history, LayerWish wish, cons
     const Split<Real> parts = split(from[axis]);
     texel[axis] = parts.whole;
     fraction[axis] = parts.fraction;
+    fetched.texel[axis] = parts.whole + (parts.fraction >= .5 ? 1 : 0);
   }
   if (wish.layer == Layer::kOnly && !is_any_split(history, texel[0], texel[1])) {
     // As in resolve_temporal: confidence is resampled like colours.

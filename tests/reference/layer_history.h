@@ -57,6 +57,7 @@ LayerStateOf<Real> state_at(const LayerHistory& history, int x, int y);
 
 // Coverage from which a near layer may stand for a surface alone.
 constexpr double kNearCoverageMin = .3;
+constexpr double kShownCoverageMin = .02;  // from which a near layer has a colour, and an alpha
 
 // A texel of a layer.
 template <typename Real>
@@ -162,7 +163,8 @@ struct FetchedLayer {
   Real confidence = 0;       // 0: nothing is known
   Real alpha = 0;            // alpha, times coverage
   Real between = 0;          // as of FetchedHistory
-  bool was_split = false;    // the texel at that place has two layers
+  std::array<int, 2> texel = {};
+  bool was_split = false;  // the texel at that place has two layers
 };
 
 // Returns the layer of history at `place`, output pixels of the previous frame; `is_rigid`: the layer that wishes.

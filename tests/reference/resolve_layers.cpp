@@ -132,6 +132,32 @@ void reseed_far(const LayeredPixel<Real>& pixel, const Frame& frame, const Neigh
   known.confidence = max(known.confidence, kConfidenceMin);
 }
 
+// The range of the alphas of a layer's own samples around a pixel.
+template <typename Real>
+AlphaRange alphas_of(const LayeredPixel<Real>& pixel, const Frame& frame, const Neighbourhood<Real>& near,
+                     Side side) {
+  return alphas_around(frame, near.x.sample, near.y.sample,
+                       [&](int x, int y) { return side_of(frame, pixel.between, x, y) == side; });
+}
+
+template <typename Real>
+void follow_far_alpha(const ResolveInputs& in, const LayeredPixel<Real>& pixel,
+                      const Neighbourhood<Real>& near, const std::array<int, 2>& texel, Real& alpha) {
+  if (pixel.split.is_split()) {
+    follow_alpha(
+        alphas_of(pixel, in.now.frame, near, Side::kFar), [] { return 0; }, alpha);
+    return;
+  }
+  const LayerHistory& past = in.past;
+  const auto texel_at = [&](int x, int y) {
+    return past.texel(std::clamp(x, 0, past.width - 1), std::clamp(y, 0, past.height - 1));
+  };
+  follow_alpha_of_one(
+      in.now.frame, near.x.sample, near.y.sample, texel,
+      [&](int x, int y) { return past.alpha[texel_at(x, y)]; },
+      [&](int x, int y) { return std::signbit(past.far[texel_at(x, y)][3]); }, alpha);
+}
+
 template <typename Real>
 HistoryTexel<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>& pixel,
                               const Neighbourhood<Real>& near) {
@@ -168,6 +194,7 @@ HistoryTexel<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>&
   reject(now, in.tiles, pixel.x, pixel.y, known);
   relight(now, in.tiles, pixel.x, pixel.y, known.colour);
 
+  if (in.has_alpha()) follow_far_alpha(in, pixel, near, fetched.texel, known.alpha);
   const bool is_held_back = holds_back(pixel.tile->light, known, sample);
 
   // Rectify and reseed.
@@ -229,6 +256,12 @@ NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& p
   const Frame& frame = in.now.frame;
   const auto around = nearest_samples<Real>(in.now, pixel.x, pixel.y, pixel.layers->phase);
   NearTexel<Real> near = fetch_near(in, pixel);
+  if (in.has_alpha() && near.value[3] > kShownCoverageMin) {
+    Real alpha = near.alpha / near.value[3];
+    follow_alpha(
+        alphas_of(pixel, frame, around, Side::kNear), [] { return 0; }, alpha);
+    near.alpha = near.value[3] * alpha;
+  }
 
   // Reseed.
   Real inertia = 0;

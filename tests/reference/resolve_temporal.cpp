@@ -43,6 +43,12 @@ HistoryTexel<Real> resolve_temporal(const TemporalInputs& in, const std::vector<
                     max(1 - trust, motion_edge_strength(Real(motion_edge)))};
   reject(in, tiles, x, y, known);
   relight(in, tiles, x, y, known.colour);
+  if (!in.history_alpha.empty()) {
+    follow_alpha_of_one(
+        frame, near.x.sample, near.y.sample, history.texel,
+        [&](int i, int j) { return in.alpha_clamped(i, j); },
+        [&](int i, int j) { return std::signbit(in.history_clamped(i, j)[3]); }, known.alpha);
+  }
   const bool is_held_back =
       holds_back(tiles[index_of(in.tiles_x(), x / kTile, y / kTile)].light, known, sample);
   if (seamless(known.rejection > 0)) {

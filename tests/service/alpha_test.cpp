@@ -26,12 +26,12 @@ constexpr Extent kRender = {80, 48};
 constexpr SceneNeeds kOpen = {.background = false};
 
 // What becomes of a surface's colour.
-using Veil = std::function<Pixel(Pixel colour, bool is_disc, Place local)>;
+using Veil = std::function<Pixel(Pixel colour, bool is_disc, Place local, int frame)>;
 
 // A disc before a ground that moves another way.
-TemporalScene disc_before_a_ground(const Veil& veil) {
-  const auto veiled = [&veil](const testing::Texture& texture, bool is_disc) {
-    return [=](Place local) { return veil(texture(local), is_disc, local); };
+TemporalScene disc_before_a_ground(const Veil& veil, int frame) {
+  const auto veiled = [&veil, frame](const testing::Texture& texture, bool is_disc) {
+    return [=](Place local) { return veil(texture(local), is_disc, local, frame); };
   };
   TemporalScene scene;
   scene.surfaces.push_back({.shape = Surface::Shape::kDisc,
@@ -45,7 +45,7 @@ TemporalScene disc_before_a_ground(const Veil& veil) {
 }
 
 Veil with_alpha(float alpha) {
-  return [=](const Pixel& colour, bool, Place) { return Pixel{colour[0], colour[1], colour[2], alpha}; };
+  return [=](const Pixel& colour, bool, Place, int) { return Pixel{colour[0], colour[1], colour[2], alpha}; };
 }
 
 struct Path {
@@ -58,14 +58,16 @@ void PrintTo(const Path& path, std::ostream* out) {
   *out << path.name;
 }
 
-Pixels both_ways(const TemporalScene& scene, const ResolveSettings& settings) {
-  constexpr int kLast = 12, kShown = 8;
-  ServiceRig rig(kOpen, settings, scene.output, kRender);
+constexpr int kLast = 12, kShownBothWays = 8;
+
+Pixels both_ways(const Veil& veil, const ResolveSettings& settings) {
+  ServiceRig rig(kOpen, settings, TemporalScene().output, kRender);
   auto forward = TwoWay::create(rig.device(), rig.service().plan());
   auto backward = TwoWay::create(rig.device(), rig.service().plan());
   KeptHistory kept, unused;
   FrameInputs inputs;
   const auto add = [&](ResolveService& service, int index, double direction, KeptHistory& history) {
+    const TemporalScene scene = disc_before_a_ground(veil, index);
     HostFrame frame = scene.render(index, kRender, testing::halton_jitter(index, 32));
     frame.velocity = [=, velocity = frame.velocity](int x, int y) {
       const Vec2 v = velocity(x, y);
@@ -75,10 +77,10 @@ Pixels both_ways(const TemporalScene& scene, const ResolveSettings& settings) {
     inputs.reset = index == (direction > 0 ? 0 : kLast);
     EXPECT_TRUE(TwoWay::add(service, inputs, &history == &kept && direction < 0, &history).ok());
   };
-  for (int index = 0; index <= kShown; ++index)
-    add(forward.value(), index, 1, index == kShown ? kept : unused);
-  for (int index = kLast; index >= kShown; --index)
-    add(backward.value(), index, -1, index == kShown ? kept : unused);
+  for (int index = 0; index <= kShownBothWays; ++index)
+    add(forward.value(), index, 1, index == kShownBothWays ? kept : unused);
+  for (int index = kLast; index >= kShownBothWays; --index)
+    add(backward.value(), index, -1, index == kShownBothWays ? kept : unused);
   inputs.colour = inputs.velocity = inputs.depth = inputs.reactive = {};
   EXPECT_TRUE(TwoWay::show(backward.value(), inputs, kept, {rig.resolved_view(), rig.presented_view()}).ok());
   return rig.resolved();
@@ -86,16 +88,15 @@ Pixels both_ways(const TemporalScene& scene, const ResolveSettings& settings) {
 
 // The last of some frames, in the middle of which the output's size changes where it may.
 Pixels picture_of(const Path& path, const Veil& veil) {
-  const TemporalScene scene = disc_before_a_ground(veil);
-  if (path.both_ways) return both_ways(scene, path.settings);
-  constexpr int kFrames = 13;
-  ServiceRig rig(kOpen, path.settings, scene.output, kRender);
+  if (path.both_ways) return both_ways(veil, path.settings);
+  ServiceRig rig(kOpen, path.settings, TemporalScene().output, kRender);
   const bool is_dual = path.settings.output.min_extent.width > 0;
   Pixels shown;
-  for (int index = 0; index < kFrames; ++index) {
+  for (int index = 0; index <= kLast; ++index) {
+    const TemporalScene scene = disc_before_a_ground(veil, index);
     HostFrame frame = scene.render(index, kRender, testing::halton_jitter(index, 32));
     frame.parity = index % 2;
-    if (is_dual && index < kFrames / 2) frame.output = {140, 84};
+    if (is_dual && index < kLast / 2) frame.output = {140, 84};
     shown = rig.resolve(frame);
   }
   return shown;
@@ -104,7 +105,8 @@ Pixels picture_of(const Path& path, const Veil& veil) {
 // Root mean square of a channel's distance from that of the truth.
 double error_of(const Path& path, const Veil& veil, int channel) {
   const Pixels shown = picture_of(path, veil);
-  const Pixels truth = disc_before_a_ground(veil).truth(path.both_ways ? 8 : 12);
+  const int frame = path.both_ways ? kShownBothWays : kLast;
+  const Pixels truth = disc_before_a_ground(veil, frame).truth(frame);
   double sum = 0;
   for (std::size_t i = 0; i < shown.size(); ++i)
     sum += std::pow(static_cast<double>(shown[i][channel]) - static_cast<double>(truth[i][channel]), 2);
@@ -138,16 +140,32 @@ TEST_P(Alpha, ItIsAsGoodAsAColour) {
                {"holdout", [](bool is_disc, Place) { return is_disc ? 0.f : 1.f; }},
                {"cut-out", [](bool is_disc, Place) { return is_disc ? 1.f : 0.f; }}};
   for (const auto& kind : kinds) {
-    const auto red = [&](const Pixel&, bool is_disc, Place local) {
+    const auto red = [&](const Pixel&, bool is_disc, Place local, int) {
       const float value = kind.alpha(is_disc, local);
       return Pixel{value, value, value, 1};
     };
-    const auto premultiplied = [&](const Pixel& colour, bool is_disc, Place local) {
+    const auto premultiplied = [&](const Pixel& colour, bool is_disc, Place local, int) {
       const float alpha = kind.alpha(is_disc, local);
       return Pixel{colour[0] * alpha, colour[1] * alpha, colour[2] * alpha, alpha};
     };
     EXPECT_LT(error_of(GetParam(), premultiplied, 3), 1.15 * error_of(GetParam(), red, 0) + 2e-3)
         << kind.name;
+  }
+}
+
+// Of the whole frame, to nearly nothing and back to all.
+TEST_P(Alpha, ItFollowsAFade) {
+  const int frame = GetParam().both_ways ? kShownBothWays : kLast;
+  for (const float step : {-.03f, .03f}) {
+    const auto alpha_of = [step](int index) {
+      return (step < 0 ? 1 : 1 - step * kLast) + step * static_cast<float>(index);
+    };
+    const Pixels shown = picture_of(GetParam(), [&](const Pixel& colour, bool, Place, int index) {
+      const float alpha = alpha_of(index);
+      return Pixel{colour[0] * alpha, colour[1] * alpha, colour[2] * alpha, alpha};
+    });
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      ASSERT_NEAR(shown[i][3], alpha_of(frame), .02) << step << " " << i;
   }
 }
 

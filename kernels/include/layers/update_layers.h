@@ -115,6 +115,34 @@ static inline Seed seed_of_layer(const SeedSamples* in, COLOUR_TEXELS colour, DE
   return seed;
 }
 
+// Moves the alphas of layers of `lanes` into the range of those of their own among the 3x3 samples around the nearest
+// ones. Coverage apart, a layer's alpha is even.
+static inline LaneFloat follow_layer_alphas(LayerKind kind, LaneMask lanes, const LayeredPixels* pixels,
+                                            COLOUR_TEXELS colour, DEPTH_TEXELS depth, TexelLayout layout,
+                                            const SourceFrame* frame, const NearestSamples* nearest, LaneFloat alphas) {
+  LaneFloat between = pixels->between;
+  LaneInt x = nearest->x;
+  for (int i = 0; i < kLanes; ++i) {
+    if (FIRST_LANE(lanes)) {
+      AlphaRange range = no_alphas();
+      for (int j = 0; j < 9; ++j) {
+        const int column = clamp(FIRST_LANE(x) + j % 3 - 1, 0, frame->width - 1);
+        const int row = clamp(nearest->y + j / 3 - 1, 0, frame->height - 1);
+        const float4 sample = load_colour(colour, frame->colour, column, row);
+        const float own = load_depth(depth, layout, column, row);
+        const bool is_own = kind == kNearLayer ? own > FIRST_LANE(between) : own < FIRST_LANE(between);
+        if (is_own && is_valid(sample)) add_to_range(&range, sample.w);
+      }
+      if (range.least <= range.most) FIRST_LANE(alphas) = follow_alpha(FIRST_LANE(alphas), range, 0.0f);
+    }
+    alphas = NEXT_LANES(alphas);
+    lanes = NEXT_LANES(lanes);
+    between = NEXT_LANES(between);
+    x = NEXT_LANES(x);
+  }
+  return alphas;
+}
+
 // Reseeds the layers of `lanes` with samples of theirs. A far layer stays what it is where there is none. Returns their
 // inertia: how much each resists this frame's sample, as a weight.
 static inline LaneFloat reseed_layer(LayerKind kind, LaneMask lanes, const LayeredPixels* pixels, COLOUR_TEXELS colour,
@@ -264,6 +292,14 @@ static inline KnownLayers update_near(KnownLayers near, const LayeredPixels* pix
                                       DEPTH_TEXELS depth, TexelLayout layout, const TemporalParams* params,
                                       const NearestSamples* nearest) {
   const SourceFrame frame = params->frame0;
+#if ALPHA
+  const LaneFloat coverage = confidences(near.texels);
+  const LaneMask covers = pixels->is_split & (coverage > SHOWN_COVERAGE_MIN);
+  const LaneFloat followed =
+      coverage * follow_layer_alphas(kNearLayer, covers, pixels, colour, depth, layout, &frame, nearest,
+                                     near.alpha / select((LaneFloat)(1.0f), coverage, covers));
+  near.alpha = select(near.alpha, followed, covers);
+#endif
   LaneFloat inertia = (LaneFloat)(0.0f);
   const LaneMask unknown = pixels->is_split & (near.confidence < CONFIDENCE_MIN);
   if (any_lane(unknown))

@@ -71,6 +71,7 @@
 #define SOURCE_DISTANCE_MAX 65536.0f    // px: keeps places within what an int can hold [N]
 
 // ---- resolve_temporal: rectifying, in tone space.
+#define EVEN_ALPHA_MAX 0.03125f  // alpha: history that varies by more around is at an edge [S]
 #define BOX_SIZE 0.75f          // standard deviations on each side of the mean [S]
 #define BOX_MARGIN 0.02f        // tone: a distance that takes all confidence where the samples are all alike [S]
 #define TONE_REST_MIN 0x1p-16f  // of 1 - tone: where rounding would make the way back infinite [N]

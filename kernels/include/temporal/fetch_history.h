@@ -169,6 +169,11 @@ static inline SourcePlaces source_places(__global const TileReprojection* previo
   return places;
 }
 
+// Returns the texels nearest to places of an axis.
+static inline LaneInt nearest_texels(Positions from) {
+  return from.texel + select((LaneInt)(1), (LaneInt)(2), from.fraction >= 0.5f);
+}
+
 // Returns whether the 4x4 texels from (x, y) on lie inside, for all pixels.
 static inline bool lie_inside(LaneInt x, LaneInt y, int width, int height) {
   return !any_lane((x | y | (width - 4 - x) | (height - 4 - y)) < 0);

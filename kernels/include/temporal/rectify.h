@@ -143,3 +143,69 @@ static inline LaneFloat rectify_alphas(COLOUR_TEXELS texels, const SourceFrame* 
   }
   return alphas;
 }
+
+// ---- Alpha that fades, or moves unlike the surfaces. No gain tells of it, as it is no light.
+
+// The range of alphas. Without any, least > most.
+typedef struct AlphaRange {
+  float least, most;
+} AlphaRange;
+
+static inline AlphaRange no_alphas(void) {
+  const AlphaRange range = {FLT_MAX, -FLT_MAX};
+  return range;
+}
+
+static inline void add_to_range(AlphaRange* range, float alpha) {
+  range->least = min(range->least, alpha);
+  range->most = max(range->most, alpha);
+}
+
+// Returns history's alpha moved into the range of this frame's, but for what it varies by around: samples may have
+// missed that. Those of cut-outs, which are 0 or 1, move only history that is even.
+static inline float follow_alpha(float alpha, AlphaRange range, float uneven) {
+  const bool is_soft = range.least > 0.0f && range.most < 1.0f;
+  if (!is_soft && uneven > EVEN_ALPHA_MAX) return alpha;
+  const float step = clamp(alpha, range.least, range.most) - alpha;
+  return alpha + copysign(max(fabs(step) - uneven, 0.0f), step);
+}
+
+// Returns by how much alpha varies over those of the 3x3 texels around (x, y) that have as many layers; clamped to the
+// edge.
+static inline float uneven_alpha(HistoryLayer layer, AlphaPlane plane, int x, int y) {
+  const int own = clamp(y, 0, plane.height - 1) * plane.width + clamp(x, 0, plane.width - 1);
+  const bool has_two = confidence_sign(layer, own) < 0;
+  AlphaRange range = no_alphas();
+  for (int i = 0; i < 9; ++i) {
+    const int column = clamp(x + i % 3 - 1, 0, plane.width - 1), row = clamp(y + i / 3 - 1, 0, plane.height - 1);
+    const int index = row * plane.width + column;
+    if ((confidence_sign(layer, index) < 0) == has_two) add_to_range(&range, load_alpha(plane, index));
+  }
+  return range.most - range.least;
+}
+
+// Moves the alphas of pixels of one layer, in `lanes`, into the range of those of the 3x3 samples around the nearest
+// ones. `from`: the texels nearest to the places of their history.
+static inline LaneFloat follow_alphas(COLOUR_TEXELS texels, const SourceFrame* frame, HistoryLayer layer,
+                                      AlphaPlane plane, LaneInt from_x, LaneInt from_y, LaneInt x, int y,
+                                      LaneFloat alphas, LaneMask lanes) {
+  for (int i = 0; i < kLanes; ++i) {
+    if (FIRST_LANE(lanes)) {
+      AlphaRange range = no_alphas();
+      for (int j = 0; j < 9; ++j) {
+        const float4 sample = sample_at(texels, frame, FIRST_LANE(x) + j % 3 - 1, y + j / 3 - 1);
+        if (is_valid(sample)) add_to_range(&range, sample.w);
+      }
+      const float own = FIRST_LANE(alphas);
+      if (range.least <= range.most && (own < range.least || own > range.most))
+        FIRST_LANE(alphas) =
+            follow_alpha(own, range, uneven_alpha(layer, plane, FIRST_LANE(from_x), FIRST_LANE(from_y)));
+    }
+    alphas = NEXT_LANES(alphas);
+    lanes = NEXT_LANES(lanes);
+    from_x = NEXT_LANES(from_x);
+    from_y = NEXT_LANES(from_y);
+    x = NEXT_LANES(x);
+  }
+  return alphas;
+}

@@ -2,6 +2,8 @@
 // Rectification: history towards the range of this frame's samples.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "frame_samples.h"
@@ -108,6 +110,66 @@ void rectify_alpha(const Frame& frame, int x, int y, Known<Real>& known) {
   const Real deviation = kBoxSize * sqrt(max(squares / count - mean * mean, 0));
   const Real middle = first + mean;
   known.alpha += (clamp(known.alpha, middle - deviation, middle + deviation) - known.alpha) * known.rejection;
+}
+
+// ---- Alpha that fades, or moves unlike the surfaces.
+
+// Alpha: history that varies by more over 3x3 texels is at an edge.
+constexpr double kEvenAlphaMax = .03125;
+
+struct AlphaRange {
+  double least = 0, most = 0;
+  bool is_known = false;
+
+  void add(double alpha) {
+    least = is_known ? std::min(least, alpha) : alpha;
+    most = is_known ? std::max(most, alpha) : alpha;
+    is_known = true;
+  }
+};
+
+// Moves history's alpha into the range of this frame's, but for what it varies by around: samples may have missed that.
+// Those of cut-outs, which are 0 or 1, move only history that is even. `uneven()`: what it varies by.
+template <typename Real, typename Uneven>
+void follow_alpha(const AlphaRange& range, const Uneven& uneven, Real& alpha) {
+  if (!range.is_known) return;
+  const bool is_below = alpha<range.least, is_above = alpha> range.most;
+  if (!is_below && !is_above) return;
+  const double around = uneven();
+  const bool is_soft = range.least > 0 && range.most < 1;
+  if (!is_soft && around > kEvenAlphaMax) return;
+  const Real step = is_below ? range.least - alpha : alpha - range.most;
+  const Real moved = max(step - around, 0);
+  alpha = is_below ? alpha + moved : alpha - moved;
+}
+
+// The range of the valid ones of the 3x3 samples around (x, y) that `counts(column, row)`.
+template <typename Counts>
+AlphaRange alphas_around(const Frame& frame, int x, int y, const Counts& counts) {
+  AlphaRange range;
+  for (int row = y - 1; row <= y + 1; ++row) {
+    for (int column = x - 1; column <= x + 1; ++column) {
+      const Pixel& sample = texel_clamped(frame, column, row);
+      if (is_valid(sample) && counts(column, row)) range.add(sample[3]);
+    }
+  }
+  return range;
+}
+
+// Of a pixel of one layer. `alpha_at(x, y)`, `has_two(x, y)`: of a texel, clamped to the edge.
+template <typename Real, typename AlphaAt, typename HasTwo>
+void follow_alpha_of_one(const Frame& frame, int x, int y, const std::array<int, 2>& texel,
+                         const AlphaAt& alpha_at, const HasTwo& has_two, Real& alpha) {
+  const auto uneven = [&] {
+    AlphaRange range;
+    for (int row = texel[1] - 1; row <= texel[1] + 1; ++row) {
+      for (int column = texel[0] - 1; column <= texel[0] + 1; ++column) {
+        if (has_two(column, row) == has_two(texel[0], texel[1])) range.add(alpha_at(column, row));
+      }
+    }
+    return range.most - range.least;
+  };
+  follow_alpha(alphas_around(frame, x, y, [](int, int) { return true; }), uneven, alpha);
 }
 
 }  // namespace quincunx::reference
