@@ -59,7 +59,9 @@ static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWis
   taps.colours.green = select(in_column(row->far.green, column), in_column(row->near.green, column) * whole, is_near);
   taps.colours.blue = select(in_column(row->far.blue, column), in_column(row->near.blue, column) * whole, is_near);
   taps.colours.coverage = select((LaneFloat)(1.0f), coverage, is_near & mask_not(split));
-  taps.colours.alpha = select(in_column(row->alpha, column), in_column(row->near_alpha, column) * whole, is_near);
+  taps.colours.alpha = (LaneFloat)(0.0f);
+  if (ALPHA)
+    taps.colours.alpha = select(in_column(row->alpha, column), in_column(row->near_alpha, column) * whole, is_near);
   taps.confidence = select(confidence, in_column(row->near_confidence, column) * coverage, is_near);
   taps.has_two = two;
   taps.valid = select(alone_valid, far_valid, split);
@@ -86,8 +88,10 @@ static inline LayerTaps near_taps(const LayerRow* row, int column, const LayerWi
   taps.colours.blue =
       select(none, select(in_column(far->blue, column), in_column(near->blue, column), is_near), is_ours);
   taps.colours.coverage = select(none, select((LaneFloat)(1.0f), in_column(near->last, column), is_near), is_ours);
-  taps.colours.alpha =
-      select(none, select(in_column(row->alpha, column), in_column(row->near_alpha, column), is_near), is_ours);
+  taps.colours.alpha = none;
+  if (ALPHA)
+    taps.colours.alpha =
+        select(none, select(in_column(row->alpha, column), in_column(row->near_alpha, column), is_near), is_ours);
   taps.confidence = select(select(empty, confidence, is_ours & mask_not(two)), in_column(row->near_confidence, column),
                            is_ours & is_near);
   taps.has_two = two;
@@ -193,7 +197,8 @@ static inline LayerColours blend_colours(const LayerSums* sums) {
   colours.green = blend_channel(cubic->green, bilinear->green, least->green, most->green, sums);
   colours.blue = blend_channel(cubic->blue, bilinear->blue, least->blue, most->blue, sums);
   colours.coverage = blend_channel(cubic->coverage, bilinear->coverage, least->coverage, most->coverage, sums);
-  colours.alpha = blend_channel(cubic->alpha, bilinear->alpha, least->alpha, most->alpha, sums);
+  colours.alpha = (LaneFloat)(0.0f);
+  if (ALPHA) colours.alpha = blend_channel(cubic->alpha, bilinear->alpha, least->alpha, most->alpha, sums);
   return colours;
 }
 

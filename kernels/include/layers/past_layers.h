@@ -281,7 +281,7 @@ static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth
     loaded.far_depth = push_four(loaded.far_depth, states.far_depth);
     loaded.near_depth = push_four(loaded.near_depth, states.near_depth);
     loaded.near_confidence = push_four(loaded.near_confidence, states.near_confidence);
-    loaded.near_alpha = push_four(loaded.near_alpha, states.near_alpha);
+    if (ALPHA) loaded.near_alpha = push_four(loaded.near_alpha, states.near_alpha);
   }
   return loaded;
 }
