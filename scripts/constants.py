@@ -36,7 +36,7 @@ QUALITY = ["SHARPENING", "EDGE_SMOOTHING", "EDGE_SHARPENING", "EDGE_GRADIENT", "
 LIGHT, JUDGE = "temporal/temporal_light.cl", "include/temporal/judge_samples.h"
 # Each rule: what stands in for which text of which kernel where it is off. White space counts as one blank.
 RULES = {
-    "relighting of 3x3 tiles": [(LIGHT, "float gain = changes &&", "float gain = false &&")],
+    "relighting of 3x3 tiles": [(LIGHT, "const bool is_local = changes &&", "const bool is_local = false &&")],
     "… only where seven of ten samples agree": [
         (LIGHT, "change.is_agreed = sum.brighter * change.direction > RELIGHT_MAJORITY_MIN * sum.count;",
          "change.is_agreed = true;")],
@@ -47,11 +47,14 @@ RULES = {
     "… changes of luma below .01 do not count": [
         (JUDGE, "where(change > LUMA_CHANGE_MIN, evidence.count) - where(change < -LUMA_CHANGE_MIN, evidence.count);",
          "where(change > 0.0f, evidence.count) - where(change < 0.0f, evidence.count);")],
-    "relighting of the whole picture": [
+    "broad gain": [(LIGHT, "return fabs(change) > GAIN_CHANGE_MIN ?", "return false ?")],
+    "… only as far as tiles agree": [(LIGHT, "return fabs(mean) > fabs(usual) ? usual * usual / mean : mean;", "return mean;")],
+    "… of which the judge is told": [(LIGHT, "const float explained = (broad - 1.0f) *", "const float explained = 0.0f *")],
+    "a relit picture is no cut": [
         (LIGHT, "const bool relit = is_widespread && is_relit(&whole);", "const bool relit = false && is_relit(&whole);")],
     "rejection by cut": [
         (LIGHT, "const float by_cut = is_widespread && !relit ?", "const float by_cut = false && is_widespread && !relit ?")],
-    "judging of cells": [(LIGHT, "if (tile.gain == 1.0f && any(asked)) {", "if (false) {")],
+    "judging of cells": [(LIGHT, "if (!is_local && any(asked)) {", "if (false) {")],
     "… that change by more than they flicker": [
         (LIGHT, "const int4 asked = changed > FLICKER_RATIO_MIN * OF_CELLS(tile.cells, flicker);",
          "const int4 asked = (int4)(-1);")],

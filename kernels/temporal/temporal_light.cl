@@ -2,19 +2,19 @@
 // temporal_light: judges a change of light in each tile by the evidence in it and in the eight tiles around it.
 //   relative   sum of brightenings / sum of light: the change of light
 //   coherence  |sum of brightenings| / sum of their magnitudes: how far tiles agree
-//   gain       the relighting gain: a coherent change that persists for two frames gives 1 + relative; aliased texture
-//              changes its sign before that. Where the whole picture changes one way the gain is given at once. Where
-//              surfaces move apart a change of light cannot be told from one of surface: the gain is 1, or the whole
-//              picture's
+//   gain       the relighting gain. The broad one follows the light of large parts of the picture: at once if it steps,
+//              else by a trend that is learnt, so that history does not lag behind. Instead of it a coherent change
+//              here that persists for two frames gives 1 + relative; aliased texture changes its sign before that, and
+//              where surfaces move apart a change of light cannot be told from one of surface
 //   rejection  of each cell the larger of two, clamped to [0, 1]:
 //     judged     by a small network, from the samples of the cell and of the cells and tiles around, now and of late:
-//                how far they differ from history, which way, and by how much more than neighbours do. 0 where the
-//                gain is not 1, and where the cell flickers more than its change. In a rigid tile without a recent
-//                confirmation around it, this waits for a second frame that says the same: each place of the jitter
-//                can look like a change of its own
+//                how far they differ from history, which way, and by how much more than neighbours do, less what the
+//                broad gain explains. 0 where another gain is given, and where the cell flickers more than its change.
+//                In a rigid tile without a recent confirmation around it, this waits for a second frame that says the
+//                same: each place of the jitter can look like a change of its own
 //     by cut     over the whole picture history predicts worse than the neighbours: it is another picture
 //   holds back samples that are far brighter than history, or negative, side by side, and the first of late
-//              (outliers): gain is 1 and rejection 0 then, and cells remember what they did before
+//              (outliers): gain is the broad one and rejection 0 then, and cells remember what they did before
 //
 //   tiles_x, tiles_y  in   the number of tiles
 //   tiles             in   TileReprojection of each tile: motion edges, whether it is rigid, and where it was
@@ -93,6 +93,48 @@ static inline float rejection_by_cut(const TotalLight* total) {
   if (!(error > CUT_ERROR_MIN * (float)total->light)) return 0.0f;
   return (error - CUT_RATIO_MIN * usual) / (CUT_RATIO_RANGE * usual + 1.0f);
 }
+
+// ---- The broad gain.
+
+// Returns the weight of a part of the picture for a place `along` it, in [0, 1], or along a part next to it: a
+// quadratic B-spline.
+static inline float part_weight(int away, float along) {
+  if (away == 0) return 0.5f + along * (1.0f - along);
+  return 0.5f * (away < 0 ? (1.0f - along) * (1.0f - along) : along * along);
+}
+
+// Returns how far history lags behind around tile (x, y), in parts of its light. What only some tiles show is a change
+// of its own there: it counts little.
+static inline float lag_around(__global const LagTotal* lags, int tiles_x, int tiles_y, int x, int y) {
+  const int at_x = (2 * x + 1) * kLagColumns, at_y = (2 * y + 1) * kLagRows;
+  const int column = at_x / (2 * tiles_x), row = at_y / (2 * tiles_y);
+  const float along_x = (float)(at_x % (2 * tiles_x)) / (float)(2 * tiles_x);
+  const float along_y = (float)(at_y % (2 * tiles_y)) / (float)(2 * tiles_y);
+  float lag = 0.0f, lit = 0.0f, usual_lag = 0.0f, usual_lit = 0.0f;
+  for (int j = max(row - 1, 0); j <= min(row + 1, kLagRows - 1); ++j) {
+    for (int i = max(column - 1, 0); i <= min(column + 1, kLagColumns - 1); ++i) {
+      const LagTotal part = lags[j * kLagColumns + i];
+      const float weight = part_weight(i - column, along_x) * part_weight(j - row, along_y);
+      lag += weight * (float)part.lag;
+      lit += weight * (float)part.lit;
+      usual_lag += weight * (float)part.usual_lag;
+      usual_lit += weight * (float)part.usual_lit;
+    }
+  }
+  if (!(lag * usual_lag > 0.0f)) return 0.0f;
+  const float mean = lag / max(lit, 1.0f), usual = usual_lag / max(usual_lit, 1.0f);
+  return fabs(mean) > fabs(usual) ? usual * usual / mean : mean;
+}
+
+// Returns the broad gain by that lag, and learns the trend.
+static inline float follow_light(float lag, float* trend) {
+  const float surprise = lag - *trend;
+  const float change = *trend + clamp(fabs(surprise) / LAG_AT_ONCE, LAG_PART_MIN, 1.0f) * surprise;
+  *trend += TREND_PART * clamp(surprise, -TREND_SURPRISE_MAX, TREND_SURPRISE_MAX);
+  return fabs(change) > GAIN_CHANGE_MIN ? clamp(1.0f + change, 1.0f / GAIN_MAX, GAIN_MAX) : 1.0f;
+}
+
+// ---- Cells.
 
 // Returns how far the mean brightening alternates: the smaller of two frames' whose signs differ.
 static inline float alternation(float now, float before) {
@@ -197,10 +239,11 @@ static inline float4 judge_cells(const CellGrid* grid, const CellLight* now, con
   return judge(inputs);
 }
 
-// What is known of a cell, but for its suspicion and rejection.
-static inline CellLight cell_light(CellEvidence evidence, CellLight before) {
+// What is known of a cell, but for its suspicion and rejection. `explained`: of each sample's brightening, by the broad
+// gain.
+static inline CellLight cell_light(CellEvidence evidence, float explained, CellLight before) {
   CellLight cell;
-  cell.mean_brightening = evidence.brightening / max(evidence.count, 1.0f);
+  cell.mean_brightening = (evidence.brightening - explained * evidence.count) / max(evidence.count, 1.0f);
   cell.flicker = FLICKER_MEMORY * before.flicker +
                  (1.0f - FLICKER_MEMORY) * alternation(cell.mean_brightening, before.mean_brightening);
   cell.drift = DRIFT_MEMORY * before.drift + cell.mean_brightening;
@@ -244,18 +287,19 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   const bool changes = is_change_of_light(&change, &around);
   tile.persistence = PERSISTENCE_MEMORY * before.persistence +
                      (changes ? (1.0f - PERSISTENCE_MEMORY) * change.direction : 0.0f);
-  float gain = changes && tile.persistence * change.direction > PERSISTENCE_MIN ? 1.0f + change.relative : 1.0f;
+  const bool is_local = changes && tile.persistence * change.direction > PERSISTENCE_MIN;
+  tile.trend = previous[i].trend;
+  const float broad = follow_light(lag_around(total->lags, tiles_x, tiles_y, x, y), &tile.trend);
+  tile.gain = is_local ? clamp(1.0f + change.relative, 1.0f / GAIN_MAX, GAIN_MAX) : broad;
+  const float explained = (broad - 1.0f) * own.light / max(own.count, 1.0f);
   const bool is_widespread = (float)whole.changed > WHOLE_CHANGED_TILES_MIN * (float)(tiles_x * tiles_y);
   const bool relit = is_widespread && is_relit(&whole);
-  if (relit && change.is_agreed && change.relative * (float)whole.brightening > 0.0f)
-    gain = 1.0f + (float)whole.brightening / (float)whole.light;  // surer than what one tile finds
-  tile.gain = clamp(gain, 1.0f / GAIN_MAX, GAIN_MAX);
 
   // Rejection. Where the light has changed, history follows it.
   float flicker = 0.0f;
   UNROLL_LANE(4)
   for (int c = 0; c < 4; ++c) {
-    tile.cells[c] = cell_light(own.cells[c], before.cells[c]);
+    tile.cells[c] = cell_light(own.cells[c], explained, before.cells[c]);
     flicker += 0.25f * tile.cells[c].flicker;
   }
   const float by_cut = is_widespread && !relit ? rejection_by_cut(&whole) : 0.0f;
@@ -265,8 +309,9 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   const float4 changed = fabs(OF_CELLS(tile.cells, mean_brightening));
   const int4 asked = changed > FLICKER_RATIO_MIN * OF_CELLS(tile.cells, flicker);
   float all_judged[4] = {0.0f, 0.0f, 0.0f, 0.0f};
-  if (tile.gain == 1.0f && any(asked)) {
-    const CellGrid grid = cells_around(evidence, tiles_x, tiles_y, x, y);
+  if (!is_local && any(asked)) {
+    CellGrid grid = cells_around(evidence, tiles_x, tiles_y, x, y);
+    grid.brightening -= explained * grid.count;
     const float4 found = judge_cells(&grid, tile.cells, before.cells, flicker, &own, &around.sum);
     vstore4(select((float4)(0.0f), clamp(found, 0.0f, 1.0f), asked), 0, all_judged);
   }
@@ -297,7 +342,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
       tile.cells[c] = before.cells[c];
       tile.cells[c].rejection = 0.0f;
     }
-    tile.gain = 1.0f;
+    tile.gain = broad;
   }
   return tile;
 }

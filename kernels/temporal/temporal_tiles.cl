@@ -174,6 +174,23 @@ static inline void add_means(TotalLight* sum, const TemporalTileParams* params, 
   sum->changed += tile.history_error > CHANGED_TILE_ERROR_MIN * tile.light;
 }
 
+// Adds how far history lags behind in tile (x, y). No sum goes beyond an int.
+static inline void add_lag(__global TotalLight* total, const TemporalTileParams* params, TileEvidence tile, int x,
+                           int y) {
+  if (!(tile.count > 0.0f)) return;
+  const int column = x * kLagColumns / params->tiles_x, row = y * kLagRows / params->tiles_y;
+  const int tiles = (params->tiles_x / kLagColumns + 1) * (params->tiles_y / kLagRows + 1);
+  const float units = min((float)kLagUnits, 0x1p30f / (LAG_MAX * (float)tiles));
+  const float light = tile.lit + LAG_LIGHT_FLOOR * tile.count;
+  const float lag = clamp(tile.lag / light, -LAG_MAX, LAG_MAX);
+  const int lit = convert_int(units * tile.lit / light);
+  __global LagTotal* part = &total->lags[row * kLagColumns + column];
+  atomic_add(&part->lag, convert_int(units * lag));
+  atomic_add(&part->lit, lit);
+  atomic_add(&part->usual_lag, convert_int(units * clamp(lag, -USUAL_LAG_MAX, USUAL_LAG_MAX)));
+  if (fabs(lag) < USUAL_LAG_MAX) atomic_add(&part->usual_lit, lit);
+}
+
 // Adds the sum of a work-item's tiles to that of the picture.
 static inline void add_to_total(__global TotalLight* total, TotalLight sum) {
   atomic_add(&total->brightening, sum.brightening);
@@ -193,7 +210,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
   const int first = get_global_id(0), tile_y = get_global_id(1);
   if (first >= params.tiles_x || tile_y >= params.tiles_y) return;
 
-  TotalLight sum = {0, 0, 0, 0, 0, 0, 0};
+  TotalLight sum = {0, 0, 0, 0, 0, 0, 0, {{0}}};
   for (int tile_x = first; tile_x < params.tiles_x; tile_x += (int)get_global_size(0)) {
     const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
     const SampleRange samples = samples_in_tile(&params, corner);
@@ -218,6 +235,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
     TileEvidence found_evidence = no_evidence();
     if (!hidden) found_evidence = judge_history(colour, depth, depth_layout, &past, &params, tile, samples);
     add_means(&sum, &params, found_evidence);
+    add_lag(total, &params, found_evidence, tile_x, tile_y);
     tiles[i] = tile;
     evidence[i] = found_evidence;
   }

@@ -43,6 +43,8 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                       .count = static_cast<float>(evidence.count),
                                       .brighter = static_cast<float>(evidence.brighter),
                                       .outliers = static_cast<float>(evidence.outliers),
+                                      .lag = number(evidence.lag),
+                                      .lit = number(evidence.lit),
                                       .cells = {}};
   static_cast<TileLight&>(made) = {.gain = number(light.gain),
                                    .rejection = number(light.rejection),
@@ -52,6 +54,7 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                    .confirmation = number(light.confirmation),
                                    .recent_outliers = number(light.recent_outliers),
                                    .holds_back = light.holds_back ? 1 : 0,
+                                   .trend = number(light.trend),
                                    .cells = {}};
   for (std::size_t i = 0; i < 4; ++i) {
     const auto& cell = evidence.cells[i];
@@ -97,6 +100,8 @@ reference::Tile to_reference(const KernelTile& tile) {
                    .count = static_cast<int>(tile.count),
                    .brighter = static_cast<int>(tile.brighter),
                    .outliers = static_cast<int>(tile.outliers),
+                   .lag = number(tile.lag),
+                   .lit = number(tile.lit),
                    .cells = {}},
       .light = {.gain = number(tile.gain),
                 .rejection = number(tile.rejection),
@@ -106,6 +111,7 @@ reference::Tile to_reference(const KernelTile& tile) {
                 .confirmation = number(tile.confirmation),
                 .recent_outliers = number(tile.recent_outliers),
                 .holds_back = tile.holds_back != 0,
+                .trend = number(tile.trend),
                 .cells = {}}};
   for (std::size_t i = 0; i < 4; ++i) {
     const CellEvidence& cell = tile.TileEvidence::cells[i];

@@ -78,6 +78,8 @@ class TemporalTiles : public ::testing::TestWithParam<StageVariant> {
                 what + " history_error");
     expect_near(evidence.neighbour_error, bound.neighbour_error, static_cast<double>(actual.neighbour_error),
                 what + " neighbour_error");
+    expect_near(evidence.lag, bound.lag, static_cast<double>(actual.lag), what + " lag");
+    expect_near(evidence.lit, bound.lit, static_cast<double>(actual.lit), what + " lit");
     for (std::size_t c = 0; c < 4; ++c) {
       const CellEvidence& cell = actual.TileEvidence::cells[c];
       ASSERT_EQ(evidence.cells[c].count, static_cast<int>(cell.count)) << what << " cell " << c;
@@ -130,12 +132,47 @@ class TemporalTiles : public ::testing::TestWithParam<StageVariant> {
 };
 
 constexpr double kLeastChanged = .03;  // part of a tile's light: a larger error of history is a change
+constexpr double kUsualLag = .005;     // part of a tile's light: a larger lag is not usual
+constexpr double kLagMax = 4;
 
 // How far the totals may be off.
 struct Allowed {
   double sum = 0;
   int changed = 0;
+  std::array<reference::LagTotalOf<double>, kLagParts> lags = {};
 };
+
+// Units of a tile's lag: the more tiles a part of the picture has, the larger.
+double lag_units(const reference::TemporalInputs& in) {
+  const int most = (in.tiles_x() / kLagColumns + 1) * (in.tiles_y() / kLagRows + 1);
+  return std::min(static_cast<double>(kLagUnits), 0x1p30 / (kLagMax * most));
+}
+
+// Adds the lag of tile i to that of its part of the picture.
+void add_lag(reference::TotalLight& total, Allowed& allowed, const ExpectedTile& expected,
+             const reference::TemporalInputs& in, int i) {
+  if (expected.evidence.value.count == 0) return;
+  const int column = i % in.tiles_x() * kLagColumns / in.tiles_x(),
+            row = i / in.tiles_x() * kLagRows / in.tiles_y();
+  const auto part = static_cast<std::size_t>(row * kLagColumns + column);
+  const double units = lag_units(in);
+  const reference::Bounded count = expected.evidence.value.count;
+  const reference::TileEvidenceOf<Bounded>& tile = expected.evidence.bound;
+  const Bounded light = tile.lit + .02 * count;
+  const Bounded lag = units * clamp(tile.lag / light, -kLagMax, kLagMax), lit = units * (tile.lit / light);
+  const Bounded usual = units * clamp(tile.lag / light, -kUsualLag, kUsualLag);
+  const bool is_usual = std::abs(lag.value) < kUsualLag * units;
+  const bool may_be_either = std::abs(std::abs(lag.value) - kUsualLag * units) <= lag.error;
+  reference::LagTotalOf<double>&sum = total.lags[part], &more = allowed.lags[part];
+  sum.lag += lag.value;
+  sum.lit += lit.value;
+  sum.usual_lag += usual.value;
+  sum.usual_lit += is_usual ? lit.value : 0;
+  more.lag += 1 + lag.error;
+  more.lit += 1 + lit.error;
+  more.usual_lag += 1 + usual.error;
+  more.usual_lit += 1 + lit.error + (may_be_either ? lit.value : 0);
+}
 
 // Each tile's part of a total is cut to an integer.
 void add_tile(reference::TotalLight& total, Allowed& allowed, const ExpectedTile& expected) {
@@ -176,6 +213,7 @@ TEST_P(TemporalTiles, MatchTheReferenceAtEverySizeAndScale) {
       if (GetParam().layers) compare_layers(expected, actual.layers[i], what);
       if (HasFatalFailure()) return;
       add_tile(total, allowed, expected);
+      add_lag(total, allowed, expected, in.reference, static_cast<int>(i));
       undecided = undecided || expected.tile.undecided || expected.evidence.undecided;
     }
     expect_layered_ones_listed(actual, name_of(spec));
@@ -188,6 +226,15 @@ TEST_P(TemporalTiles, MatchTheReferenceAtEverySizeAndScale) {
     ASSERT_NEAR(total.history_error, actual.total.history_error, allowed.sum) << name_of(spec);
     ASSERT_NEAR(total.neighbour_error, actual.total.neighbour_error, allowed.sum) << name_of(spec);
     ASSERT_NEAR(total.changed, actual.total.changed, allowed.changed) << name_of(spec);
+    for (std::size_t part = 0; part < total.lags.size(); ++part) {
+      const reference::LagTotalOf<double>&sum = total.lags[part], &more = allowed.lags[part];
+      const LagTotal& found = actual.total.lags[part];
+      const std::string where = fmt::format("{}: part {}", name_of(spec), part);
+      ASSERT_NEAR(sum.lag, found.lag, more.lag) << where;
+      ASSERT_NEAR(sum.lit, found.lit, more.lit) << where;
+      ASSERT_NEAR(sum.usual_lag, found.usual_lag, more.usual_lag) << where;
+      ASSERT_NEAR(sum.usual_lit, found.usual_lit, more.usual_lit) << where;
+    }
   }
   EXPECT_GE(decided_, compared_ * 3 / 4);
   if (GetParam().colour != PixelFormat::kRGBA8) {  // what has been tone mapped is never so bright

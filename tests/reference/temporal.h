@@ -52,6 +52,7 @@ struct TileEvidenceOf {
   int count = 0;             // samples
   int brighter = 0;  // those that are brighter than history by more than noise, less those that are darker
   int outliers = 0;  // those that are outliers, with two of their neighbours
+  Real lag = 0, lit = 0;  // s - h and h, each by the luma weight of s instead
   std::array<CellEvidenceOf<Real>, 4> cells;
 };
 using TileEvidence = TileEvidenceOf<double>;
@@ -77,6 +78,7 @@ struct TileLightOf {
   Real confirmation = 0;     // 1 where a suspicion is confirmed; it fades
   Real recent_outliers = 0;  // 1 where samples are outliers, or beside; it fades
   bool holds_back = false;   // outliers are held back: they are the first ones
+  Real trend = 0;            // part of the light by which it changes a frame, as learnt
   std::array<CellLightOf<Real>, 4> cells;
 };
 using TileLight = TileLightOf<double>;
@@ -87,6 +89,14 @@ struct Tile {
   TileLight light = {};
 };
 
+// How far the history of a part of the picture lags behind: sums of the tiles' lag and lit over lit + .02 count.
+template <typename Real>
+struct LagTotalOf {
+  Real lag = 0, lit = 0;
+  Real usual_lag = 0, usual_lit = 0;  // each lag within .005; lit of the tiles whose lag is
+};
+constexpr int kLagColumns = 4, kLagRows = 3;
+
 // The evidence of the whole picture: the sums over all tiles of their means, in units of 1 / kLightUnits.
 template <typename Real>
 struct TotalLightOf {
@@ -94,6 +104,7 @@ struct TotalLightOf {
   Real change = 0;  // |brightening| of each tile
   Real light = 0, history_error = 0, neighbour_error = 0;
   int changed = 0;  // tiles with a history_error above .03 of their light
+  std::array<LagTotalOf<Real>, kLagColumns* kLagRows> lags = {};
 };
 using TotalLight = TotalLightOf<double>;
 
@@ -145,7 +156,8 @@ PixelOf<Real> as(const Pixel& pixel) {
 template <typename Real>
 TileEvidenceOf<Real> as(const TileEvidence& e) {
   TileEvidenceOf<Real> made{e.brightening, e.light,    e.history_error, e.neighbour_error,
-                            e.count,       e.brighter, e.outliers,      {}};
+                            e.count,       e.brighter, e.outliers,      e.lag,
+                            e.lit,         {}};
   for (std::size_t i = 0; i < 4; ++i)
     made.cells[i] = {e.cells[i].brightening, e.cells[i].count, e.cells[i].brighter};
   return made;
@@ -153,7 +165,7 @@ TileEvidenceOf<Real> as(const TileEvidence& e) {
 template <typename Real>
 TileLightOf<Real> as(const TileLight& l) {
   TileLightOf<Real> made{l.gain,         l.rejection,       l.cut,        l.new_cut, l.persistence,
-                         l.confirmation, l.recent_outliers, l.holds_back, {}};
+                         l.confirmation, l.recent_outliers, l.holds_back, l.trend,   {}};
   for (std::size_t i = 0; i < 4; ++i) {
     const CellLightOf<double>& cell = l.cells[i];
     made.cells[i] = {cell.rejection, cell.mean_brightening, cell.flicker, cell.suspicion, cell.drift};
@@ -162,7 +174,11 @@ TileLightOf<Real> as(const TileLight& l) {
 }
 template <typename Real>
 TotalLightOf<Real> as(const TotalLight& t) {
-  return {t.brightening, t.change, t.light, t.history_error, t.neighbour_error, t.changed};
+  TotalLightOf<Real> made{t.brightening,     t.change,  t.light, t.history_error,
+                          t.neighbour_error, t.changed, {}};
+  for (std::size_t i = 0; i < t.lags.size(); ++i)
+    made.lags[i] = {t.lags[i].lag, t.lags[i].lit, t.lags[i].usual_lag, t.lags[i].usual_lit};
+  return made;
 }
 
 // Whether a sample takes part: finite, and below the largest half, which stands for overflow.

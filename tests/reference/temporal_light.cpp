@@ -6,19 +6,22 @@
 //   coherent     |B| > .75 sum |brightening|, |relative| > .05, |B| > 3 N / sqrt(n), no motion edge in the nine
 //                tiles, and the samples agree: (sum of b) sign(relative) > .4 n, seven of ten
 //   persistence  p <- .6 p, + .4 sign(relative) if coherent
-//   gain         1 + relative if coherent and p sign(relative) > .62
+//   lag          m = lag / lit, u = usual_lag / usual_lit, each of sums over 3 x 3 of the picture's 4 x 3 parts,
+//                weighted by a quadratic B-spline; if both have the same sign: m min(1, (u / m)^2)
+//   change       t + e min(max(|e| / .02, .2), 1), e = lag - t; the trend of the place, t <- t + .02 e, with e in +-.05
+//   gain         1 + relative if coherent and p sign(relative) > .62, else 1 + change if |change| > .0005, else 1
 //   widespread   more than .2 of all tiles have changed
 //   relit        |sum of brightenings| of the whole picture > .8 its change and > .05 its light,
-//                and widespread; then at once gain = 1 + that sum / light, where the samples agree on
-//                the same sign
+//                and widespread
 //   before       a rigid tile's memory, primed here, is that of the tile, and of the cells, where the middles of it and
 //                of its cells were `step` texels ago, clamped to the picture
 //   flicker      of a cell: f <- .9 f + .1 a, a the smaller |mean| of this frame and of the previous one where
 //                their signs differ, else 0; of a tile: the mean of its cells'
 //   drift        of a cell: d <- .7 d + mean
 //   rejection    of each cell the larger of two, within [0, 1]
-//     judged     where gain = 1 and |mean| > 4 f: the network of judge_weights.h, of a cell's inputs
-//                as judge_cell() lists them, in units of u = N / n + .02 and turned to the sign of its mean
+//     judged     where the gain is not by relative, and |mean| > 4 f: the network of judge_weights.h, of a cell's
+//                inputs as judge_cell() lists them, in units of u = N / n + .02 and turned to the sign of its mean.
+//                Brightenings are less what the broad gain explains: change times the tile's mean light a sample
 //     waits      where the tile is rigid and the nine tiles' confirmation was below .3, max(2 min(s, s') - 1, 0) in
 //                place of s, s and s' of what was judged in this frame and in the previous one; 0 if the signs of their
 //                means differ
@@ -27,10 +30,10 @@
 //   confirmation 1 where 2 min(s, s') - 1 > 0 in a cell, else u <- .97 u
 //   recent outliers  1 where one of the nine tiles has outliers, else a <- .9 a
 //   holds back   there, if none of the nine had recent outliers >= .15 in the previous frame,
-//                and the picture is neither relit nor cut; gain = 1 and rejection = 0 then, and cells keep what
+//                and the picture is neither relit nor cut; gain by change, and rejection = 0 then, and cells keep what
 //                they remembered
 // Source: found by measuring (docs/lab/temporal.md): the gain is worth 4.7 dB on moving light and 6.8 dB on steps
-// of the whole picture.
+// of the whole picture, the broad one .4 to 2.3 dB on light that drifts.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -48,6 +51,11 @@ constexpr double kRelightMajorityMin = .4;  // share brighter less share darker:
 constexpr double kPersistenceMemory = .6;   // part of persistence that is kept, each frame
 constexpr double kPersistenceMin = .62;     // two coherent frames give .4 + .6 * .4 = .64
 constexpr double kGainMax = 4;              // and 1 / 4 the least
+constexpr double kLagAtOnce = .02;          // part of the light: of less a part is corrected
+constexpr double kLagPartMin = .2;          // each frame
+constexpr double kTrendPart = .02;          // part of the surprise that is learnt, each frame
+constexpr double kTrendSurpriseMax = .05;   // part of the light
+constexpr double kGainChangeMin = .0005;    // part of the light
 constexpr double kLightSumMin = 1e-6;       // against a division by 0
 constexpr double kWholeCoherenceMin = .8;   // coherence of the whole picture
 
@@ -110,10 +118,9 @@ bool is_relit(const TotalLightOf<Real>& total, bool is_widespread) {
          whole > kRelightChangeMin * total.light;
 }
 
-// Persistence and gain.
+// The gain of a coherent change, which persists; 1 without.
 template <typename Real>
-void relight(const Sums<Real>& sums, const TotalLightOf<Real>& total, bool is_relit,
-             const TileLightOf<Real>& before, TileLightOf<Real>& light) {
+Real local_gain(const Sums<Real>& sums, const TileLightOf<Real>& before, TileLightOf<Real>& light) {
   const Real relative = sums.brightening / max(sums.light, kLightSumMin);
   const Real coherence = abs(sums.brightening) / max(sums.change, kLightSumMin);
   const Real samples = sums.count;
@@ -124,18 +131,53 @@ void relight(const Sums<Real>& sums, const TotalLightOf<Real>& total, bool is_re
   const Real memory = kPersistenceMemory;
   light.persistence = memory * before.persistence;
   if (is_coherent) light.persistence += (1 - memory) * sign;
-  light.gain = is_coherent && light.persistence * sign > kPersistenceMin ? 1 + relative : Real(1);
-
-  if (is_relit && agrees && relative * total.brightening > 0)
-    light.gain = 1 + total.brightening / total.light;
-  light.gain = clamp(light.gain, 1 / kGainMax, kGainMax);
+  const bool persists = is_coherent && light.persistence * sign > kPersistenceMin;
+  return persists ? clamp(1 + relative, 1 / kGainMax, kGainMax) : Real(1);
 }
 
-// A cell that is not rejected.
+// A quadratic B-spline: what the part of a picture counts at `place`, in parts from its edge.
+double part_weight(int part, double place) {
+  const double away = std::abs(place - part - .5);
+  if (away >= 1.5) return 0;
+  return away <= .5 ? .75 - away * away : .5 * (1.5 - away) * (1.5 - away);
+}
+
+// How far history lags behind around a tile.
 template <typename Real>
-CellLightOf<Real> cell_light(const CellEvidenceOf<Real>& evidence, const CellLightOf<Real>& before) {
+Real lag_around(const LightInputs& in, const TotalLightOf<Real>& total, int x, int y) {
+  LagTotalOf<Real> sum;
+  for (int row = 0; row < kLagRows; ++row) {
+    for (int column = 0; column < kLagColumns; ++column) {
+      const double weight = part_weight(column, (x + .5) * kLagColumns / in.tiles_x) *
+                            part_weight(row, (y + .5) * kLagRows / in.tiles_y);
+      if (weight == 0) continue;
+      const LagTotalOf<Real>& part = total.lags[index_of(kLagColumns, column, row)];
+      sum.lag += weight * part.lag;
+      sum.lit += weight * part.lit;
+      sum.usual_lag += weight * part.usual_lag;
+      sum.usual_lit += weight * part.usual_lit;
+    }
+  }
+  if (!(sum.lag * sum.usual_lag > 0)) return 0;
+  const Real mean = sum.lag / max(sum.lit, 1), usual = sum.usual_lag / max(sum.usual_lit, 1);
+  return abs(mean) > abs(usual) ? usual * usual / mean : mean;
+}
+
+// The broad gain; learns the trend.
+template <typename Real>
+Real broad_gain(const Real& lag, const Real& trend, TileLightOf<Real>& light) {
+  const Real surprise = lag - trend;
+  const Real change = trend + surprise * clamp(abs(surprise) / kLagAtOnce, kLagPartMin, 1);
+  light.trend = trend + kTrendPart * clamp(surprise, -kTrendSurpriseMax, kTrendSurpriseMax);
+  return abs(change) > kGainChangeMin ? clamp(1 + change, 1 / kGainMax, kGainMax) : Real(1);
+}
+
+// A cell that is not rejected. `explained`: what the broad gain makes of each sample's brightening.
+template <typename Real>
+CellLightOf<Real> cell_light(const CellEvidenceOf<Real>& evidence, const Real& explained,
+                             const CellLightOf<Real>& before) {
   CellLightOf<Real> cell;
-  cell.mean_brightening = evidence.brightening / std::max(evidence.count, 1);
+  cell.mean_brightening = (evidence.brightening - explained * evidence.count) / std::max(evidence.count, 1);
   Real alternation = 0;
   if (cell.mean_brightening * before.mean_brightening < 0)
     alternation = min(abs(cell.mean_brightening), abs(before.mean_brightening));
@@ -164,11 +206,14 @@ Real judge(const std::array<Real, JUDGE_INPUTS>& inputs) {
 // That of cell (x, y) of the picture.
 template <typename Real>
 Real judge_cell(const LightInputs& in, int x, int y, const Sums<Real>& sums, const CellLightOf<Real>& now,
-                const CellLightOf<Real>& before, const Real& tile_flicker) {
+                const CellLightOf<Real>& before, const Real& tile_flicker, const Real& explained) {
   const auto cell_at = [&](int column, int row) -> CellEvidenceOf<Real> {
     if (column < 0 || row < 0 || column >= 2 * in.tiles_x || row >= 2 * in.tiles_y) return {};
     const Tile& tile = in.tiles[index_of(in.tiles_x, column / 2, row / 2)];
-    return as<Real>(tile.evidence).cells[static_cast<std::size_t>(row % 2 * 2 + column % 2)];
+    CellEvidenceOf<Real> cell =
+        as<Real>(tile.evidence).cells[static_cast<std::size_t>(row % 2 * 2 + column % 2)];
+    cell.brightening = cell.brightening - explained * cell.count;
+    return cell;
   };
   const auto mean_at = [&](int column, int row) {
     const CellEvidenceOf<Real> cell = cell_at(column, row);
@@ -249,11 +294,14 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
   TileLightOf<Real> light;
   const bool is_widespread = total.changed > kWholeChangedTilesMin * in.tiles_x * in.tiles_y;
   const bool relit = is_relit(total, is_widespread);
-  relight(sums, total, relit, before, light);
+  const Real broad = broad_gain<Real>(lag_around(in, total, x, y), in.before[i].light.trend, light);
+  const Real local = local_gain(sums, before, light);
+  light.gain = local == 1 ? broad : local;
+  const Real explained = (broad - 1) * evidence.light / std::max(evidence.count, 1);
   const Real by_cut = is_widespread && !relit ? rejection_by_cut(total) : Real(0);
   Real flicker = 0;
   for (std::size_t c = 0; c < 4; ++c) {
-    light.cells[c] = cell_light(evidence.cells[c], before.cells[c]);
+    light.cells[c] = cell_light(evidence.cells[c], explained, before.cells[c]);
     flicker += .25 * light.cells[c].flicker;
   }
   const bool waits = in.tiles[i].reprojection.is_rigid && Real(sums.confirmation) < kRigidTileConfirmationMax;
@@ -263,9 +311,10 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
     CellLightOf<Real>& cell = light.cells[n];
     const Real change = abs(cell.mean_brightening);
     Real judged = 0;
-    if (light.gain == 1 && change > kFlickerRatioMin * cell.flicker) {
+    if (local == 1 && change > kFlickerRatioMin * cell.flicker) {
       judged =
-          clamp(judge_cell(in, 2 * x + c % 2, 2 * y + c / 2, sums, cell, before.cells[n], flicker), 0, 1);
+          clamp(judge_cell(in, 2 * x + c % 2, 2 * y + c / 2, sums, cell, before.cells[n], flicker, explained),
+                0, 1);
     }
     cell.suspicion = cell.mean_brightening < 0 ? -judged : judged;
     const Real suspected = before.cells[n].suspicion;
@@ -281,7 +330,7 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
   light.holds_back =
       sums.outliers > 0 && Real(sums.recent_outliers) < kOutlierRearmMax && !relit && !(by_cut > 0);
   if (light.holds_back) {
-    light.gain = 1;
+    light.gain = broad;
     light.rejection = 0;
     light.cells = before.cells;
     for (CellLightOf<Real>& cell : light.cells)

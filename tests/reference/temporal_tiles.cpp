@@ -6,6 +6,8 @@
 //   phase, step   R' - M = step + phase, step the nearest integer
 //   evidence      sum of (s - h) k, h k, |s - h| k, k = 1 / (1 + s + h), and of |s - n| / (1 + s + n): luma of
 //                 the sample s, of history h at its place, of the mean n of its four neighbours
+//                 lag, lit: of s - h and h by the luma weight of s. 0, in the mean, where history is what it
+//                 becomes under constant light; the weights k, which depend on h, would find texture dark
 //                 Samples of two layers, and those of hidden tiles (layer_tile.cpp), say nothing
 //   outliers      how many of those samples are, and two of their four neighbours with them
 // Source: found by measuring (docs/lab/temporal.md): carrying a phase instead of resampling gives .7 dB, and 1.6
@@ -132,6 +134,8 @@ void judge_sample(const TemporalInputs& in, const TileReprojectionOf<Real>& tile
   evidence.brightening += change;
   evidence.light += h * scale;
   evidence.history_error += abs(change);
+  evidence.lag += luma_weighted(s - h, as<Real>(sample));
+  evidence.lit += luma_weighted(h, as<Real>(sample));
   evidence.neighbour_error += neighbour_error(in, x, y, s);
   const int brighter = change > kLumaChangeMin ? 1 : change < -kLumaChangeMin ? -1 : 0;
   evidence.brighter += brighter;

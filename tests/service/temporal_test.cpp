@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <random>
 
 #include "temporal_scene.h"
@@ -307,6 +308,37 @@ TEST(Temporal, AStepOfLightRecoversInTwoFrames) {
         const double own = testing::psnr(run.until(kStep + 3), truth);
         const double unchanged = testing::psnr(reference.until(kStep + 3), truth);
         EXPECT_GE(own, unchanged - 1) << preset << ", " << factor << ", " << scene.surfaces.back().velocity;
+      }
+    }
+  }
+}
+
+// Exposure that adapts, daylight: the picture is as bright as its frames, as it is under constant light.
+TEST(Temporal, LightThatDriftsIsFollowed) {
+  constexpr int kFrames = 48, kCompared = 8;  // jitter shifts means of single frames
+  const auto brightness = [](const Pixels& pixels) {
+    return std::accumulate(pixels.begin(), pixels.end(), 0.,
+                           [](double sum, const Pixel& pixel) { return sum + pixel[1]; });
+  };
+  for (TemporalScene scene : {still_scene(), moving_scene({.7, -.4})}) {
+    for (const auto& [preset, settings] : kPresets) {
+      TemporalRun constant(scene, settings);
+      constant.until(kFrames - kCompared);
+      std::array<double, kCompared> usual;
+      for (double& of_frame : usual)
+        of_frame = brightness(constant.next());
+      for (const double drift : {-.01, .004}) {
+        TemporalScene drifting = scene;
+        drifting.light = [=](Place, int frame) { return std::pow(1 + drift, frame); };
+        TemporalRun run(drifting, settings);
+        run.until(kFrames - kCompared);
+        double lag = 0;
+        for (int i = 0; i < kCompared; ++i)
+          lag += brightness(run.next()) / std::pow(1 + drift, kFrames - kCompared + i) /
+                     usual[static_cast<std::size_t>(i)] -
+                 1;
+        EXPECT_LT(std::abs(lag / kCompared), .003)
+            << preset << ", " << drift << ", " << scene.surfaces.back().velocity;
       }
     }
   }

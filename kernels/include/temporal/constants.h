@@ -29,7 +29,17 @@
 #define LUMA_CHANGE_MIN 0.01f         // relative luma: a sample is brighter or darker from here on [S]
 #define CHANGED_TILE_ERROR_MIN 0.03f  // of a tile's light: error from which on the tile counts as changed [S]
 
-// ---- temporal_light: the relighting gain.
+// ---- temporal_tiles, temporal_light: the broad gain.
+#define USUAL_LAG_MAX 0.005f       // of a tile's light: it counts for no more, in the usual lag [S]
+#define LAG_AT_ONCE 0.02f          // of the light: of less a part is corrected [S]
+#define LAG_PART_MIN 0.2f          // of a lag, a frame [S]
+#define TREND_PART 0.02f           // of a lag, a frame: what is learnt of it [S]
+#define TREND_SURPRISE_MAX 0.05f   // of the light: of more no more is learnt [S]
+#define GAIN_CHANGE_MIN 0.0005f    // of the light: halves hold no less [S]
+#define LAG_LIGHT_FLOOR 0.02f      // luma: added to a tile's light [S]
+#define LAG_MAX 4.0f               // of a tile's light [N]
+
+// ---- temporal_light: the local gain, and whether the whole picture is relit.
 #define RELIGHT_COHERENCE_MIN 0.75f   // |sum| / sum of magnitudes, of brightenings of 3x3 tiles [S]
 #define RELIGHT_CHANGE_MIN 0.05f      // of the light [S]
 #define RELIGHT_MAJORITY_MIN 0.4f     // (samples for it - against it) / samples: seven of ten; +.02 dB [S]

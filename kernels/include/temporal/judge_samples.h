@@ -107,7 +107,7 @@ static inline LaneMask find_judged(const Past* past, DEPTH_TEXELS depth, TexelLa
 
 // CellEvidence and TileEvidence of each lane's samples, but for outliers.
 typedef struct LaneEvidence {
-  LaneFloat brightening, brighter, count, light, history_error, neighbour_error;
+  LaneFloat brightening, brighter, count, light, history_error, neighbour_error, lag, lit;
 } LaneEvidence;
 
 static inline LaneFloat where(LaneMask lanes, LaneFloat value) {
@@ -116,8 +116,8 @@ static inline LaneFloat where(LaneMask lanes, LaneFloat value) {
 
 // Returns what samples say of history by their own luma, history's, and that of their neighbours' mean, which counts
 // where all four are valid. What is not `judged` says nothing.
-static inline LaneEvidence judge_lanes(LaneFloat own, LaneFloat known, LaneFloat beside, LaneMask all_valid,
-                                       LaneMask judged) {
+static inline LaneEvidence judge_lanes(LaneFloat own, LaneFloat brightest, LaneFloat known, LaneFloat beside,
+                                       LaneMask all_valid, LaneMask judged) {
   const LaneFloat scale = 1.0f / (1.0f + own + known);
   const LaneFloat change = (own - known) * scale;
   LaneEvidence evidence;
@@ -127,6 +127,9 @@ static inline LaneEvidence judge_lanes(LaneFloat own, LaneFloat known, LaneFloat
       where(change > LUMA_CHANGE_MIN, evidence.count) - where(change < -LUMA_CHANGE_MIN, evidence.count);
   evidence.light = where(judged, known * scale);
   evidence.history_error = where(judged, fabs(change));
+  const LaneFloat weight = 1.0f / max(1.0f, 0.5f * brightest);
+  evidence.lag = where(judged, (own - known) * weight);
+  evidence.lit = where(judged, known * weight);
   evidence.neighbour_error = where(judged & all_valid, fabs(own - beside) / (1.0f + own + beside));
   return evidence;
 }
@@ -188,7 +191,7 @@ static inline void add_row(RowsEvidence* rows, LaneTexels history, const SampleL
   judged &= fabs(confidences(history)) >= JUDGED_CONFIDENCE_MIN;
   const LaneFloat beside = 0.25f * (near->left.luma + near->right.luma + near->above.luma + near->below.luma);
   const LaneEvidence found =
-      judge_lanes(max(own->luma, 0.0f), max(luma_of(history), 0.0f), max(beside, 0.0f),
+      judge_lanes(max(own->luma, 0.0f), own->brightest, max(luma_of(history), 0.0f), max(beside, 0.0f),
                   near->left.valid & near->right.valid & near->above.valid & near->below.valid, judged);
   LaneEvidence* sum = is_upper ? &rows->upper : &rows->lower;
   sum->brightening += found.brightening;
@@ -197,6 +200,8 @@ static inline void add_row(RowsEvidence* rows, LaneTexels history, const SampleL
   sum->light += found.light;
   sum->history_error += found.history_error;
   sum->neighbour_error += found.neighbour_error;
+  sum->lag += found.lag;
+  sum->lit += found.lit;
   const OutlierRange range = outlier_range(history);
   const LaneMask outliers = judged & are_outliers(own, range);
   if (!any_lane(outliers)) return;
@@ -235,6 +240,10 @@ static inline void add_rows(TileEvidence* tile, const RowsEvidence* rows, LaneMa
                                   where(left, lower->brighter), where(right, lower->brighter),
                                   where(left, upper->count), where(right, upper->count),
                                   where(left, lower->count), where(right, lower->count));
+  const LaneFloat lag = upper->lag + lower->lag, lit = upper->lit + lower->lit;
+  const float8 two = sum_lanes(lag, lit, lag, lit, lag, lit, lag, lit);
+  tile->lag += two.s0;
+  tile->lit += two.s1;
   add_to_cell(&tile->cells[0], changes.s0, counts.s0, counts.s4);
   add_to_cell(&tile->cells[1], changes.s1, counts.s1, counts.s5);
   add_to_cell(&tile->cells[2], changes.s2, counts.s2, counts.s6);
@@ -257,7 +266,7 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
   const LaneInt columns = clamp(x + LANE_NUMBERS, (LaneInt)(0), (LaneInt)(frame->width - 1));
   const LaneMask middle = (LANE_NUMBERS >= 1) & (LANE_NUMBERS <= min(samples.last.x - x, (int)kJudgedAtOnce));
   const LaneFloat place_x = to_lane_float(x + LANE_NUMBERS) * params->spacing_x + params->start_x;
-  const LaneEvidence none = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  const LaneEvidence none = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   RowsEvidence rows = {none, none, 0.0f};
   SampleLanes above = load_row(colour, frame, x, columns, samples.first.y - 1);
   SampleLanes own = load_row(colour, frame, x, columns, samples.first.y);
@@ -306,13 +315,16 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
     const float beside = 0.25f * (near.left.luma + near.right.luma + near.above.luma + near.below.luma);
     const bool all_valid = near.left.valid & near.right.valid & near.above.valid & near.below.valid;
     const LaneEvidence found =
-        judge_lanes(max(of_own.luma, 0.0f), max(luma_of(before), 0.0f), max(beside, 0.0f), all_valid, true);
+        judge_lanes(max(of_own.luma, 0.0f), of_own.brightest, max(luma_of(before), 0.0f), max(beside, 0.0f),
+                    all_valid, true);
     evidence->brightening += found.brightening;
     evidence->brighter += found.brighter;
     evidence->count += found.count;
     evidence->light += found.light;
     evidence->history_error += found.history_error;
     evidence->neighbour_error += found.neighbour_error;
+    evidence->lag += found.lag;
+    evidence->lit += found.lit;
     const int row = (int)place_y % kTemporalTile / kTemporalCell;
     const int column = (int)place_x % kTemporalTile / kTemporalCell;
     add_to_cell(&evidence->cells[2 * row + column], found.brightening, found.brighter, found.count);

@@ -61,14 +61,15 @@ typedef struct TileEvidence {
   float count;            // number of judged samples
   float brighter;         // how many of them are brighter than history by more than noise, less those that are darker
   float outliers;         // how many of them, with two of their neighbours, are outliers
+  float lag, lit;         // s - h and h, each by the sample's luma weight instead: 0 where history is as it comes to be
   CellEvidence cells[4];  // row by row
 } TileEvidence;
-QUINCUNX_CHECK_SIZE(TileEvidence, 28 + 4 * 12);
+QUINCUNX_CHECK_SIZE(TileEvidence, 36 + 4 * 12);
 
 // That of no sample.
 static inline TileEvidence no_evidence(void) {
   const CellEvidence none = {0.0f, 0.0f, 0.0f};
-  const TileEvidence evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {none, none, none, none}};
+  const TileEvidence evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {none, none, none, none}};
   return evidence;
 }
 
@@ -92,9 +93,18 @@ typedef struct TileLight {
   float recent_outliers;  // 1 in a frame with outliers in it or beside it; it fades over frames
   // 0 or 1: outliers are held back, because no frame of late had any: they may be faults of one frame.
   int holds_back;
+  float trend;  // by how much of the light it changes a frame, as learnt; of the place, not of what moves there
   CellLight cells[4];
 } TileLight;
-QUINCUNX_CHECK_SIZE(TileLight, 32 + 4 * 20);
+QUINCUNX_CHECK_SIZE(TileLight, 36 + 4 * 20);
+
+// How far the history of a part of the picture lags behind: sums over its tiles, of each in parts of its mean light.
+typedef struct LagTotal {
+  int lag, lit;
+  int usual_lag, usual_lit;  // no tile's lag counts more than usual; light of the tiles that lag less
+} LagTotal;
+QUINCUNX_CHECK_SIZE(LagTotal, 16);
+enum { kLagColumns = 4, kLagRows = 3, kLagParts = kLagColumns * kLagRows };  // parts of the picture
 
 // The evidence of the whole picture, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are so
 // many that an int would overflow: whether the light has changed everywhere, or the picture is another one.
@@ -105,9 +115,10 @@ typedef struct TotalLight {
   int history_error, neighbour_error;
   int changed;  // how many tiles have a history_error of more than 3 % of their light
   int layered;  // how many tiles are layered: the entries of their list
+  LagTotal lags[kLagParts];  // row by row, in units of 1 / kLagUnits or larger
 } TotalLight;
-QUINCUNX_CHECK_SIZE(TotalLight, 28);
-enum { kLightUnits = 2048 };
+QUINCUNX_CHECK_SIZE(TotalLight, 28 + 16 * kLagParts);
+enum { kLightUnits = 2048, kLagUnits = 65536 };
 
 #ifdef __cplusplus
 }  // namespace quincunx
