@@ -51,7 +51,7 @@ RULES = {
     "… only as far as tiles agree": [(LIGHT, "return fabs(mean) > fabs(usual) ? usual * usual / mean : mean;", "return mean;")],
     "… of which the judge is told": [(LIGHT, "const float explained = (broad - 1.0f) *", "const float explained = 0.0f *")],
     "a relit picture is no cut": [
-        (LIGHT, "const bool relit = is_widespread && is_relit(&whole);", "const bool relit = false && is_relit(&whole);")],
+        (LIGHT, "const bool relit = is_widespread && is_relit(total);", "const bool relit = false && is_relit(total);")],
     "rejection by cut": [
         (LIGHT, "const float by_cut = is_widespread && !relit ?", "const float by_cut = false && is_widespread && !relit ?")],
     "judging of cells": [(LIGHT, "if (!is_local && any(asked)) {", "if (false) {")],

@@ -83,12 +83,12 @@ static inline bool is_change_of_light(const LightChange* change, const EvidenceA
          fabs(change->relative) > RELIGHT_CHANGE_MIN;
 }
 
-static inline bool is_relit(const TotalLight* total) {
+static inline bool is_relit(__global const TotalLight* total) {
   const float whole = (float)total->brightening, change = (float)total->change, light = (float)total->light;
   return fabs(whole) > WHOLE_COHERENCE_MIN * change && fabs(whole) > RELIGHT_CHANGE_MIN * light;
 }
 
-static inline float rejection_by_cut(const TotalLight* total) {
+static inline float rejection_by_cut(__global const TotalLight* total) {
   const float error = (float)total->history_error, usual = (float)total->neighbour_error;
   if (!(error > CUT_ERROR_MIN * (float)total->light)) return 0.0f;
   return (error - CUT_RATIO_MIN * usual) / (CUT_RATIO_RANGE * usual + 1.0f);
@@ -110,19 +110,15 @@ static inline float lag_around(__global const LagTotal* lags, int tiles_x, int t
   const int column = at_x / (2 * tiles_x), row = at_y / (2 * tiles_y);
   const float along_x = (float)(at_x % (2 * tiles_x)) / (float)(2 * tiles_x);
   const float along_y = (float)(at_y % (2 * tiles_y)) / (float)(2 * tiles_y);
-  float lag = 0.0f, lit = 0.0f, usual_lag = 0.0f, usual_lit = 0.0f;
+  float4 sum = (float4)(0.0f);  // as the fields of LagTotal
   for (int j = max(row - 1, 0); j <= min(row + 1, kLagRows - 1); ++j) {
-    for (int i = max(column - 1, 0); i <= min(column + 1, kLagColumns - 1); ++i) {
-      const LagTotal part = lags[j * kLagColumns + i];
-      const float weight = part_weight(i - column, along_x) * part_weight(j - row, along_y);
-      lag += weight * (float)part.lag;
-      lit += weight * (float)part.lit;
-      usual_lag += weight * (float)part.usual_lag;
-      usual_lit += weight * (float)part.usual_lit;
-    }
+    float4 across = (float4)(0.0f);
+    for (int i = max(column - 1, 0); i <= min(column + 1, kLagColumns - 1); ++i)
+      across += part_weight(i - column, along_x) * convert_float4(vload4(j * kLagColumns + i, &lags->lag));
+    sum += part_weight(j - row, along_y) * across;
   }
-  if (!(lag * usual_lag > 0.0f)) return 0.0f;
-  const float mean = lag / max(lit, 1.0f), usual = usual_lag / max(usual_lit, 1.0f);
+  if (!(sum.x * sum.z > 0.0f)) return 0.0f;
+  const float mean = sum.x / max(sum.y, 1.0f), usual = sum.z / max(sum.w, 1.0f);
   return fabs(mean) > fabs(usual) ? usual * usual / mean : mean;
 }
 
@@ -278,7 +274,6 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   const int i = y * tiles_x + x;
   const TileEvidence own = evidence[i];
   const TileLight before = remember(previous, tiles[i], tiles_x, tiles_y, x, y);
-  const TotalLight whole = *total;
   const EvidenceAround around = sum_evidence(tiles, evidence, previous, tiles_x, tiles_y, x, y);
   const LightChange change = change_of(&around);
   TileLight tile;
@@ -292,8 +287,8 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   const float broad = follow_light(lag_around(total->lags, tiles_x, tiles_y, x, y), &tile.trend);
   tile.gain = is_local ? clamp(1.0f + change.relative, 1.0f / GAIN_MAX, GAIN_MAX) : broad;
   const float explained = (broad - 1.0f) * own.light / max(own.count, 1.0f);
-  const bool is_widespread = (float)whole.changed > WHOLE_CHANGED_TILES_MIN * (float)(tiles_x * tiles_y);
-  const bool relit = is_widespread && is_relit(&whole);
+  const bool is_widespread = (float)total->changed > WHOLE_CHANGED_TILES_MIN * (float)(tiles_x * tiles_y);
+  const bool relit = is_widespread && is_relit(total);
 
   // Rejection. Where the light has changed, history follows it.
   float flicker = 0.0f;
@@ -302,7 +297,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
     tile.cells[c] = cell_light(own.cells[c], explained, before.cells[c]);
     flicker += 0.25f * tile.cells[c].flicker;
   }
-  const float by_cut = is_widespread && !relit ? rejection_by_cut(&whole) : 0.0f;
+  const float by_cut = is_widespread && !relit ? rejection_by_cut(total) : 0.0f;
   const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;
   tile.confirmation = CONFIRMATION_MEMORY * before.confirmation;
   tile.rejection = 0.0f;
