@@ -15,7 +15,7 @@
 
 #define LEAST_SPEED 1.0f     // samples: what moves by less is nearly in the same place whatever the sign
 #define MOST_CONTRAST 0.25f  // of both lights' sum: beyond it all forecasts are as wrong
-#define LEAST_LIGHT 1e-6f
+#define LEAST_LIGHT 1e-30f  // two lights of 0 are alike
 
 static inline float luma_at(COLOUR_TEXELS texels, TexelLayout layout, int x, int y) {
   const float4 colour = sanitise4(load_colour(texels, layout, x, y));

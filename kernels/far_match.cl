@@ -8,11 +8,13 @@
 //   colour0, 1         in   RGBA16F or RGBA32F, viewports
 //   motion             in   FarModel
 //   match              out  FarMatch, to which each cell adds its errors
+//   exposure           in   Exposure of frame n: light is compared as exposed light
 // Options: SOURCE_STORAGE, SOURCE_FORMAT, VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/far_motion.cpp
 #include "bits.h"
 #include "motion/camera_velocity.h"
 #include "motion/velocity_params.h"
+#include "picture_params.h"
 #include "texel.h"
 
 static inline float luma_of(float4 colour) {
@@ -54,17 +56,18 @@ static inline float previous_luma(const FarMatchParams* params, COLOUR_TEXELS te
 }
 
 // Brightness as the eye has it, not light.
-static inline float difference_of(float a, float b) {
-  return fabs(a - b) / (1.0f + a + b);
+static inline float difference_of(float a, float b, float one) {
+  return fabs(a - b) / (one + a + b);
 }
 
 __kernel void far_match(const FarMatchParams params, DEPTH_TEXELS depth0, DEPTH_TEXELS depth1, VELOCITY_TEXELS drawn,
                         COLOUR_TEXELS colour0, COLOUR_TEXELS colour1, __global const FarModel* motion,
-                        __global FarMatch* match) {
+                        __global FarMatch* match, __global const Exposure* exposure) {
   const int cell_x = get_global_id(0), cell_y = get_global_id(1);
   if (cell_x >= params.cells_x || cell_y >= params.cells_y) return;
 
   const FarModel found = *motion;
+  const float one = exposure->inverse;  // of exposed light
   float still = 0.0f, moved = 0.0f;
   const int end_x = min((cell_x + 1) * kFarCell, params.width), end_y = min((cell_y + 1) * kFarCell, params.height);
   for (int y = cell_y * kFarCell; y < end_y; y += 2) {
@@ -75,8 +78,8 @@ __kernel void far_match(const FarMatchParams params, DEPTH_TEXELS depth0, DEPTH_
       const Place moves = previous_place(&params, depth1, x, y, far_velocity_at(&found, &params.places, x, y));
       if (!stays.is_evidence || !moves.is_evidence) continue;
       const float now = luma_at(colour0, params.colour0, x, y);
-      still += difference_of(now, previous_luma(&params, colour1, stays.at));
-      moved += difference_of(now, previous_luma(&params, colour1, moves.at));
+      still += difference_of(now, previous_luma(&params, colour1, stays.at), one);
+      moved += difference_of(now, previous_luma(&params, colour1, moves.at), one);
     }
   }
   atomic_add(&match->still, (int)(still * params.units));

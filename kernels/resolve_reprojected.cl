@@ -6,7 +6,7 @@
 //        centre p shows: (1 - d^2/r^2)^3 on each axis, d in render pixels
 //   w0   of the 2x2 samples around p: g times the same + (1 - g) times bilinear's, so that without trust the picture is
 //        bilinear's, and becomes so steadily
-//   h    1 / max(2, largest of red, green and blue): one bright sample does not outshine the others
+//   h    1 / max(2, largest of red, green and blue), of exposed light: one bright sample does not outshine the others
 //   g    the trust of that nearest sample
 //
 //   params              in   extents, layouts, falloffs 1 / r^2
@@ -18,6 +18,7 @@
 //   reactive0, 1        in   REACTIVE 1 with MOTION 0: R8 of both frames; g = (1 - reactive0) (1 - reactive1)
 //   output              out  RGBA32F or RGBA16F, output extent
 //   non_finite          out  non_finite[params.counter] grows by the pixels with NaN or infinite input that counts
+//   exposure            in   Exposure of frame n
 // Options: MOTION    1 (default) | 0: nothing moves, q = p, g = 1 but for REACTIVE
 //          REACTIVE  0 (default) | 1
 //          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
@@ -25,13 +26,14 @@
 // Reference: tests/reference/resolve_reprojected.cpp
 #include "arithmetic.h"
 #include "bits.h"
+#include "picture_params.h"
 #include "texel.h"
 
 #include "distance_weights.h"
 #include "motion/motion_edge.h"
 #include "resolve_params.h"
 
-#define BRIGHT 2.0f  // see any_at_least_two
+#define BRIGHT 2.0f  // of exposed light
 
 // Values that a run of output pixels in one row shares.
 typedef struct Row {
@@ -73,7 +75,8 @@ static inline float8 careful_pair(COLOUR_TEXELS texels, const SourceFrame* frame
 // The slow path: one pixel of any viewports and any values: NaN counts as 0, +-Inf as +-65504.
 static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
                                      int x0, int y0, int x1, int y1, float fraction0_x, float fraction0_y,
-                                     float fraction1_x, float fraction1_y, float found_trust, bool* met) {
+                                     float fraction1_x, float fraction1_y, float found_trust, float bright,
+                                     bool* met) {
   const bool lost = (as_int(found_trust) & 0x7fffffff) >= NON_FINITE_BITS;
   float trust = lost ? 0.0f : found_trust;
   const LaneFloat now_x = (LaneFloat)(fraction0_x), now_y = (LaneFloat)(fraction0_y);
@@ -95,8 +98,8 @@ static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEX
   samples.now1 = sanitise8(samples.now1);
   samples.before0 = sanitise8(samples.before0);
   samples.before1 = sanitise8(samples.before1);
-  const int8 bits = bits_of(samples);
-  return any_at_least_two(bits.lo | bits.hi) ? blend_bright(samples, own, BRIGHT) : blend_samples(samples, own);
+  return any_is_bright(magnitudes_of(samples), bright) ? blend_bright(samples, own, bright)
+                                                       : blend_samples(samples, own);
 }
 
 // Pixel i of a block the fast way: into pixel_<i>.
@@ -106,7 +109,7 @@ static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEX
       load_colour_pair_at(colour1, upper1, LANE(before, i), LANE(before_x.texel, i), LANE(before_y.texel, i)),         \
       load_colour_pair_at(colour1, lower1, LANE(before, i), LANE(before_x.texel, i), LANE(before_y.texel, i) + 1)};    \
   const float4 pixel_##i = blend_samples(samples_##i, PIXEL_WEIGHTS(weights, i));                                      \
-  bits |= bits_of(samples_##i)
+  magnitudes = max(magnitudes, magnitudes_of(samples_##i))
 
 // Pixel i of a block, its n-th, of which the first `count` exist.
 #define RESOLVE_CAREFULLY(i, n)                                                                                        \
@@ -115,7 +118,7 @@ static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEX
     const float4 pixel =                                                                                               \
         resolve_careful(&params, colour0, colour1, LANE(now_x.texel, i), LANE(now_y.texel, i), LANE(before_x.texel, i),\
                         LANE(before_y.texel, i), LANE(now_x.fraction, i), LANE(now_y.fraction, i),                     \
-                        LANE(before_x.fraction, i), LANE(before_y.fraction, i), LANE(motion.trust, i), &met);          \
+                        LANE(before_x.fraction, i), LANE(before_y.fraction, i), LANE(motion.trust, i), bright, &met);  \
     store_output(output, params.output, x + n, y, pixel);                                                              \
     met_count += met;                                                                                                  \
   }
@@ -123,7 +126,8 @@ static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEX
 __kernel void resolve_reprojected(const ReprojectedParams params, __global const int* positions0,
                                   __global const int* positions1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
                                   __global const float* reprojection, REACTIVE_TEXELS reactive0,
-                                  REACTIVE_TEXELS reactive1, OUTPUT_TEXELS output, __global uint* non_finite) {
+                                  REACTIVE_TEXELS reactive1, OUTPUT_TEXELS output, __global uint* non_finite,
+                                  __global const Exposure* exposure) {
   const int y = get_global_id(1);
   const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
   if (item.first >= item.end || y >= params.output_height) return;
@@ -139,6 +143,7 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
   COLOUR_ROW lower = colour_row(colour0, frame0.colour, min(FIRST_LANE(now_y.texel) + 1, frame0.height - 1));
   COLOUR_ROW upper1 = colour_row(colour1, frame1.colour, 0);
   COLOUR_ROW lower1 = colour_row(colour1, frame1.colour, 1);
+  const float bright = BRIGHT * exposure->inverse;
   uint met_count = 0;
   for (int x = item.first; x < item.end; x += item.step) {
     const int count = pixels_from(item, x);
@@ -160,10 +165,11 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
     const Positions before_x = moved_positions(column1, motion.x, frame1.width - 1);
     const Positions before_y = moved_positions(row1, motion.y, frame1.height - 1);
     if (pairs) {
+      const bool is_lost = any_lane((as_lane_int(motion.trust) & 0x7fffffff) >= NON_FINITE_BITS);
       const Weights weights = weights_of(&params, now_x.fraction, now_y.fraction, before_x.fraction, before_y.fraction,
                                          motion.trust);
       const LaneInt before = before_y.texel * frame1.colour.pitch + before_x.texel;
-      int8 bits = (int8)(as_lane_int(motion.trust));
+      int8 magnitudes = 0;
       RESOLVE(s0);
 #if LANES == 8
       RESOLVE(s1);
@@ -173,7 +179,7 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
       RESOLVE(s5);
       RESOLVE(s6);
       RESOLVE(s7);
-      if (!any_at_least_two(bits.lo | bits.hi)) {
+      if (!is_lost && !any_is_bright(magnitudes, bright)) {
         const FourPixels left = {pixel_s0, pixel_s1, pixel_s2, pixel_s3};
         const FourPixels right = {pixel_s4, pixel_s5, pixel_s6, pixel_s7};
         store_four(output, params.output, x, y, x + count, left);
@@ -181,7 +187,7 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
         continue;
       }
 #else
-      if (!any_at_least_two(bits.lo | bits.hi)) {
+      if (!is_lost && !any_is_bright(magnitudes, bright)) {
         store_output(output, params.output, x, y, pixel_s0);
         continue;
       }

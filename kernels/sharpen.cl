@@ -3,6 +3,7 @@
 //   params  in   extents, layouts, sharpness in [0, 1]
 //   source  in   RGBA32F or RGBA16F, output extent, linear, premultiplied; a buffer. NaN counts as 0, +-Inf as +-65504
 //   output  out  as source, alpha unchanged; another buffer
+//   exposure  in  Exposure of this frame: c is exposed light
 // Options: SOURCE_FORMAT  HALF (default) | FLOAT   of source; OUTPUT_FORMAT is the same
 // With c the pixel, m the mean of left, right, above and below, low and high the range of the five:
 //   out = clamp(c + sharpness * (1 + |c|) / (1 + max(-low, high)) * (c - m), low, high)
@@ -46,35 +47,38 @@ static inline float16 contrast_of(Cross cross) {
 }
 
 // min() and max(), not fmin() and fmax(): on a CPU those of NaN, which does not count here, cost more than the rest.
-static inline float16 sharpened(Cross cross, float16 contrast, float sharpness) {
+// `one`: 1 of exposed light, in scene light.
+static inline float16 sharpened(Cross cross, float16 contrast, float sharpness, float one) {
   const float16 low = min(min(min(cross.left, cross.right), min(cross.above, cross.below)), cross.centre);
   const float16 high = max(max(max(cross.left, cross.right), max(cross.above, cross.below)), cross.centre);
-  const float16 slope = (1.0f + fabs(cross.centre)) / (1.0f + max(-low, high));
+  const float16 slope = (one + fabs(cross.centre)) / (one + max(-low, high));
   const float16 moved = min(max(cross.centre + sharpness * slope * contrast, low), high);
   const int4 alpha = (int4)(0, 0, 0, -1);
   return select(moved, cross.centre, (int16)(alpha, alpha, alpha, alpha));
 }
 
-static inline void sharpen_careful(RESOLVED_TEXELS source, OUTPUT_TEXELS output, const SharpenParams* params, int x,
-                                   int y, int end) {
+static inline void sharpen_careful(RESOLVED_TEXELS source, OUTPUT_TEXELS output, const SharpenParams* params,
+                                   float one, int x, int y, int end) {
   const Cross cross = load_careful_cross(source, params, x, y);
-  const float16 colour = sharpened(cross, contrast_of(cross), params->sharpness);
+  const float16 colour = sharpened(cross, contrast_of(cross), params->sharpness, one);
   const FourPixels pixels = {colour.s0123, colour.s4567, colour.s89ab, colour.scdef};
   store_four(output, params->output, x, y, end, pixels);
 }
 
-__kernel void sharpen(const SharpenParams params, RESOLVED_TEXELS source, OUTPUT_TEXELS output) {
+__kernel void sharpen(const SharpenParams params, RESOLVED_TEXELS source, OUTPUT_TEXELS output,
+                      __global const Exposure* exposure) {
   const int y = get_global_id(1);
   const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kBlock);
   if (item.first >= item.end || y >= params.height) return;
 
+  const float one = exposure->inverse;
   int x = item.first;
 #if LANES == 8
   const int above = max(y - 1, 0), below = min(y + 1, params.height - 1);
   const TexelLayout layout = params.source;
   int16 largest = 0;
   if (x == 0) {
-    sharpen_careful(source, output, &params, x, y, item.end);
+    sharpen_careful(source, output, &params, one, x, y, item.end);
     x += kBlock;
   }
   for (; x + kBlock <= min(item.end, params.width - 1); x += kBlock) {
@@ -83,7 +87,7 @@ __kernel void sharpen(const SharpenParams params, RESOLVED_TEXELS source, OUTPUT
                          load_resolved4(source, layout, x, below)};
     const float16 contrast = contrast_of(cross);
     largest = max(largest, as_int16(contrast) & 0x7fffffff);
-    store_output4(output, params.output, x, y, sharpened(cross, contrast, params.sharpness));
+    store_output4(output, params.output, x, y, sharpened(cross, contrast, params.sharpness, one));
   }
   const int8 largest8 = max(largest.lo, largest.hi);
   if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = item.first;
@@ -91,5 +95,5 @@ __kernel void sharpen(const SharpenParams params, RESOLVED_TEXELS source, OUTPUT
 
   // The rest of the row or, which is rare, all of it once more. With LANES=1 all of it.
   for (; x < item.end; x += item.step)
-    sharpen_careful(source, output, &params, x, y, x + pixels_from(item, x));
+    sharpen_careful(source, output, &params, one, x, y, x + pixels_from(item, x));
 }

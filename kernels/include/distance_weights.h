@@ -71,8 +71,16 @@ static inline float4 blend_samples(FourPairs samples, PixelWeights w) {
   return pair.lo + pair.hi;
 }
 
-static inline int8 bits_of(FourPairs samples) {
-  return as_int8(samples.now0) | as_int8(samples.now1) | as_int8(samples.before0) | as_int8(samples.before1);
+// Returns the largest magnitudes of the channels, as bits.
+static inline int8 magnitudes_of(FourPairs samples) {
+  return max(max(as_int8(samples.now0) & 0x7fffffff, as_int8(samples.now1) & 0x7fffffff),
+             max(as_int8(samples.before0) & 0x7fffffff, as_int8(samples.before1) & 0x7fffffff));
+}
+
+// Whether one of such magnitudes of colour is `bright` or more, one of alpha is 2, or any is infinite or NaN.
+static inline bool any_is_bright(int8 magnitudes, float bright) {
+  const int4 limits = (int4)((int3)(as_int(bright)), 0x40000000);
+  return any_of_eight(magnitudes >= (int8)(limits, limits));
 }
 
 // Returns the weight of each sample of a pair, in all its lanes: 1 / max(bright, largest of red, green and blue).

@@ -52,6 +52,30 @@ typedef struct CrossFadeParams {
 } CrossFadeParams;
 QUINCUNX_CHECK_SIZE(CrossFadeParams, 32);
 
+// ---- exposure.
+// What exposed light is to scene light. Exact inverses where both are powers of two.
+typedef struct Exposure {
+  float factor;   // times scene light: exposed light
+  float inverse;  // times exposed light: scene light
+  float change;   // times exposed light of the previous frame: that of this one; a power of two, 1 in a first frame
+  float wanted;   // what the factor would be in a first frame
+} Exposure;
+QUINCUNX_CHECK_SIZE(Exposure, 16);
+
+// Blocks of the viewport, and at most so many texels of each on each axis.
+enum { kExposureColumns = 32, kExposureRows = 16, kExposureTexels = 8 };
+
+typedef struct ExposureParams {
+  int width;  // the viewport
+  int height;
+  int texels_x;  // of a block
+  int texels_y;
+  TexelLayout colour;
+  float given;  // the caller's factor; 0: there is none
+  int follows;  // 0: every frame counts as the first
+} ExposureParams;
+QUINCUNX_CHECK_SIZE(ExposureParams, 32);
+
 typedef struct PresentParams {
   int width;
   int height;

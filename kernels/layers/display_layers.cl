@@ -15,6 +15,7 @@
 //   near_history  in      the near layer
 //   states        in      LayerState of each texel of a layered tile
 //   output        in/out  RGBA32F or RGBA16F, output extent
+//   exposure      in      Exposure of this frame
 // Options: ALPHA 0 (default) | 1: layers have alpha; 0: they are opaque
 //          VIEW  PICTURE (default) | LAYERS, COVERAGE, NEAR: what layers there are, in every pixel: red where there are
 //                two, green the near one's coverage, blue the far one's confidence; that coverage; the near one alone
@@ -172,7 +173,7 @@ __kernel void display_layers(const TemporalDisplayParams params, const HistorySa
                              __global const TileReprojection* tiles, __global const LayerTile* layers,
                              __global const int* listed, __global const TotalLight* total, HISTORY_TEXELS history,
                              HISTORY_TEXELS alpha, HISTORY_TEXELS near_history, __global const half* states,
-                             OUTPUT_TEXELS output) {
+                             OUTPUT_TEXELS output, __global const Exposure* exposure) {
   const int all = params.tiles_x * ((params.output_height + kTemporalTile - 1) / kTemporalTile);
   const int end = (VIEW == PICTURE ? total->layered : all) * kRunsOfTile;
   const PastLayers known =
@@ -196,7 +197,7 @@ __kernel void display_layers(const TemporalDisplayParams params, const HistorySa
       near = sample_near(&known, depth, layer.between, display, x, y);
       near_alpha = near_alphas(&known, depth, layer.between, display, x, y, is_split & (LANE_NUMBERS < count));
     }
-    const LaneTexels known_near = select_texels(no_texels(), near, is_split);
+    const LaneTexels known_near = exposed(select_texels(no_texels(), near, is_split), exposure->inverse);
     const LaneTexels far = load_pixels(output, index, count);
     stream_output_lanes(output, params.output, x, y, count, shown_of(far, known_near, near_alpha, confidence));
   }

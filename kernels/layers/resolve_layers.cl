@@ -30,6 +30,7 @@
 //   updated_near       out  its near layer
 //   updated_states     out  LayerState of each texel of a layered tile
 //   non_finite         out  non_finite[params.counter] grows by the pixels whose sample is NaN or infinite
+//   exposure           in   Exposure of this frame
 // Options: ALPHA  0 (default) | 1: alpha is accumulated, in both layers as colour is
 //          SOURCE_STORAGE, SOURCE_FORMAT, HISTORY_FORMAT as of resolve_temporal
 // Reference: tests/reference/resolve_layers.cpp
@@ -52,9 +53,10 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
                              __global const TileReprojection* tiles, __global const LayerTile* layers,
                              __global const TileLight* light, __global const int* listed,
                              __global const TotalLight* total, STORED_HISTORY updated, STORED_HISTORY updated_alpha,
-                             STORED_HISTORY updated_near, __global half* updated_states, __global uint* non_finite) {
+                             STORED_HISTORY updated_near, __global half* updated_states, __global uint* non_finite,
+                             __global const Exposure* exposure) {
   const int end = total->layered * kRunsOfTile;
-  const SourceFrame frame = params.frame0;
+  const ExposedFrame frame = expose(params.frame0, exposure);
   const PastLayers past = past_layers(params.output_width, params.output_height, before, history, alpha, near_history,
                                       states, previous_tiles, previous_layers);
   const SampleMotion sample_motion = {reprojection, params.reprojection, params.motion_x, params.motion_y};
@@ -76,14 +78,15 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     LaneFloat known_alpha;
     const FetchedHistory fetched = known_far(&pixels, &fetched_both.far, &motion, &known_alpha);
     Evidence evidence = limit_confidence(&fetched, &motion);
-    const RowLight row_light = light_of_row(light, &params, x, y);
+    const RowLight row_light = light_of_row(light, &params, exposure->change, x, y);
     reject_by_light(&evidence, row_light);
     evidence.rejection = select(evidence.rejection, (LaneFloat)(0.0f), pixels.is_split);
     LaneTexels known = relight(fetched.texels, row_light);
-    LaneTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
+    LaneTexels samples = load_samples(colour, &frame, nearest.x, nearest.y);
 #if ALPHA
     // What nothing is known of, and no sample shows, is as transparent as what hides it.
-    known_alpha = select(known_alpha, last_channels(samples), are_valid(samples) & (fetched.confidence == 0.0f));
+    const LaneMask is_shown = are_valid(held_samples(samples)) & (fetched.confidence == 0.0f);
+    known_alpha = select(known_alpha, last_channels(samples), is_shown);
     const LayerSources* from = &fetched_both.far.from;
     const Positions from_x = {from->x, from->fraction_x}, from_y = {from->y, from->fraction_y};
     known_alpha = follow_alphas(colour, &frame, past.far, past.alpha, nearest_texels(from_x), nearest_texels(from_y),
@@ -121,7 +124,7 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     const NearestSamples nearest_near = find_nearest_samples(&params, positions, x, row, near_tile);
     const float cut = light[tile_index].new_cut;
     KnownLayers near = known_near(&pixels, &fetched_both.near, row_light, cut);
-    near = update_near(near, &pixels, colour, depth, depth_layout, &params, &nearest_near);
+    near = update_near(near, &pixels, colour, &frame, depth, depth_layout, &params, &nearest_near);
     const LaneMask is_inside = LANE_NUMBERS < count;
     store_near(updated_near, index, near.texels, pixels.is_split & is_inside);
     store_states(updated_states, index, count, select(pixels.depth, pixels.far_depth, pixels.is_split),

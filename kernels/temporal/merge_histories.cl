@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // merge_histories: makes one history of two, of the frames up to this one and of those from this one on, both at the
-// pixels' centres. With a of confidence W, b of confidence V and t(c) = c / (1 + max(red, green, blue, 0)):
+// pixels' centres, in exposed light. With a of confidence W, b of V, and t(c) = c / (1 + max(red, green, blue, 0)):
 //   t(m) = l t(a) + (1 - l) t(b),  l = f(W) / (f(W) + f(V)),  f(W) = W^2 / (W + 1) + .001
 //   Its confidence is W + V, negative (two layers) where one of them is. Alpha is merged without t.
 //   Of two layers, W is a mean by shares: 1 / (W + .1) = (1 - c) / (F + .1) + c / (N + .1), with F of the far layer, N
@@ -11,15 +11,17 @@
 //   history       in   of its texels the confidence alone
 //   near_history  in   of texels of two layers the coverage
 //   states        in   LayerState of texels of two layers
-//   other         in   the other history, as merged; read only where there is one
+//   other         in   the other history, as merged, in light exposed by params.other_exposure, if there is one
 //   other_alpha   in   ALPHA 1: its alpha
 //   merged        out  history
 //   merged_alpha  out  ALPHA 1: its alpha
+//   exposure      in   Exposure of this frame
 // Options: ALPHA          1 (default) | 0: all is opaque
 //          SOURCE_FORMAT  HALF (default) | FLOAT   of centred
 //          HISTORY_FORMAT as in temporal/history.h
 // Source: measured (docs/lab/sequences.md).   Reference: tests/reference/merge_histories.cpp
 #include "layers/past_layers.h"
+#include "picture_params.h"
 #include "temporal/constants.h"
 #include "temporal/history.h"
 #include "temporal/temporal_params.h"
@@ -65,7 +67,8 @@ static inline float4 untone(float4 tone) {
 
 __kernel void merge_histories(const MergeParams params, RESOLVED_TEXELS centred, HISTORY_TEXELS history,
                               HISTORY_TEXELS near_history, __global const half* states, HISTORY_TEXELS other,
-                              HISTORY_TEXELS other_alpha, STORED_HISTORY merged, STORED_HISTORY merged_alpha) {
+                              HISTORY_TEXELS other_alpha, STORED_HISTORY merged, STORED_HISTORY merged_alpha,
+                              __global const Exposure* exposure) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.width || y >= params.height) return;
@@ -73,13 +76,16 @@ __kernel void merge_histories(const MergeParams params, RESOLVED_TEXELS centred,
   const HistoryLayer own = {history, params.width, params.height}, others = {other, params.width, params.height};
   const HistoryLayer near = {near_history, params.width, params.height};
   const int end = min(first + params.columns_per_item, params.width);
+  const bool has_other = params.other_exposure != 0.0f;
+  const float change = has_other ? exposure->factor / params.other_exposure : 1.0f;
   for (int x = first; x < end; ++x) {
     const int index = y * params.width + x;
     float4 made = load_resolved(centred, params.centred, x, y);
+    made.xyz *= exposure->factor;
     float confidence = confidence_at(own, near, states, index);
-    if (params.has_other) {
+    if (has_other) {
       const float4 texel = load_history(others, index);
-      float4 second = (float4)(texel.xyz, 1.0f);
+      float4 second = (float4)(texel.xyz * change, 1.0f);
 #if ALPHA
       const AlphaPlane plane = {other_alpha, params.width, params.height};
       second.w = load_alpha(plane, index);

@@ -27,6 +27,7 @@
 //   updated_alpha   out  ALPHA 1: its alpha
 //   view            out  VIEW other than PICTURE: RGBA32F or RGBA16F, output extent
 //   non_finite      out  non_finite[params.counter] grows by the pixels whose sample is NaN or infinite
+//   exposure        in   Exposure of this frame
 // Options: ALPHA     0 (default) | 1: alpha is accumulated as colour is, with the same weights
 //          MOTION    1 (default) | 0: nothing moves
 //          REACTIVE  0 (default) | 1: with MOTION 0; else the reprojection's trust holds what reactive values take
@@ -128,15 +129,15 @@ enum { kPlainAhead = 6 * kTemporalTile };  // texels to prefetch
 
 // Adds samples to pixels on the path kCopiedPlain, from (x, y) on. Returns false, and stores nothing, where too
 // little is known of one, or a sample is bright or not finite.
-static inline bool resolve_plain_row(const TemporalParams* params, COLOUR_TEXELS colour, HistoryLayer layer,
-                                     TileReprojection tile, const NearestSamples* nearest, STORED_HISTORY updated,
-                                     int x, int y) {
+static inline bool resolve_plain_row(const TemporalParams* params, COLOUR_TEXELS colour, const ExposedFrame* frame,
+                                     HistoryLayer layer, TileReprojection tile, const NearestSamples* nearest,
+                                     STORED_HISTORY updated, int x, int y) {
   const int index = y * params->output_width + x;
   const int from = index - tile.step_y * params->output_width - tile.step_x;
   will_read_history(layer, from + kPlainAhead);
   WILL_WRITE(updated + 4 * (index + kPlainAhead));
   const FetchedHistory fetched = copy_history(layer, x - tile.step_x, y - tile.step_y);
-  const LaneTexels samples = load_samples(colour, params->frame0.colour, nearest->x, nearest->y);
+  const LaneTexels samples = load_samples(colour, frame, nearest->x, nearest->y);
   if (any_lane(fetched.confidence < CONFIDENCE_MIN) || may_be_bright(samples)) return false;
   const LaneFloat weight = distance_weights(params, nearest, reach_of(tile, fetched.confidence));
   const LaneTexels sum = accumulate(fetched.texels, fetched.confidence, (LaneFloat)(0.0f), samples, weight);
@@ -150,13 +151,14 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
                                __global const TileReprojection* previous_tiles, __global const TileReprojection* tiles,
                                __global const TileLight* light, __global const LayerTile* layers,
                                STORED_HISTORY updated, STORED_HISTORY updated_alpha, OUTPUT_TEXELS view,
-                               __global uint* non_finite) {
+                               __global uint* non_finite, __global const Exposure* exposure) {
   const int first_y = get_global_id(1) * kTemporalTile;
   const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
   if (item.first >= item.end || first_y >= params.output_height) return;
 
   const int end_y = min(first_y + kTemporalTile, params.output_height);
-  const SourceFrame frame = params.frame0;
+  const ExposedFrame frame = expose(params.frame0, exposure);
+  const float change = exposure->change;
   const HistoryLayer layer = {history, params.output_width, params.output_height};
   const SampleMotion sample_motion = {reprojection, params.reprojection, params.motion_x, params.motion_y};
   const int tile_y = first_y / kTemporalTile;
@@ -171,7 +173,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     const bool right_is_even = has_even_light(light, &params, tile_x + 1, tile_y);
     if (kLanes == 1) left_is_even = has_even_light(light, &params, tile_x - 1, tile_y);
     if (kLanes == 1) own_is_even = has_even_light(light, &params, tile_x, tile_y);
-    const bool even = left_is_even && own_is_even && right_is_even;
+    const bool even = left_is_even && own_is_even && right_is_even && change == 1.0f;
     left_is_even = own_is_even;
     own_is_even = right_is_even;
 #if LAYERS
@@ -186,7 +188,8 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
       const NearestSamples nearest = in_row(&params, columns, row_position(&params, positions, y), tile);
       const TilePath path =
           path_of_row(rows, previous_tiles, &params, reactive0, reactive1, &nearest, tile, tile_x, y);
-      if (path == kCopiedPlain && resolve_plain_row(&params, colour, layer, tile, &nearest, updated, x, y)) continue;
+      if (path == kCopiedPlain && resolve_plain_row(&params, colour, &frame, layer, tile, &nearest, updated, x, y))
+        continue;
       const bool looks_up_motion = path == kResampled || path == kCopied;
       Reprojections motion = no_motion();
       if (looks_up_motion) motion = reproject_pixels(&params, reprojection, reactive0, reactive1, &nearest);
@@ -202,14 +205,14 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
 #endif
 
       // Relight.
-      const RowLight row_light = even ? even_light() : light_of_row(light, &params, x, y);
+      const RowLight row_light = even ? even_light() : light_of_row(light, &params, change, x, y);
       reject_by_light(&evidence, row_light);
       LaneTexels known = relight(fetched.texels, row_light);
 
       // Load the samples, and find outliers to hold back.
-      LaneTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
+      LaneTexels samples = load_samples(colour, &frame, nearest.x, nearest.y);
 #if ALPHA
-      const LaneMask differs = mask_not(are_valid(samples) & (last_channels(samples) == known_alpha));
+      const LaneMask differs = mask_not(are_valid(held_samples(samples)) & (last_channels(samples) == known_alpha));
       if (any_lane(differs)) {
         LaneInt from_x = x - tile.step_x + LANE_NUMBERS, from_y = (LaneInt)(y - tile.step_y);
         if (path == kResampled) {

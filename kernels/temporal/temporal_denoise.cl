@@ -18,6 +18,7 @@
 //   albedo   in   format and extent as source; a buffer. Read only where it is known
 //   history  in   the layer of this frame: of its texels the confidence alone
 //   output   out  as source, alpha unchanged; another buffer
+//   exposure in   Exposure of this frame: colour is that of exposed light
 // Options: SOURCE_FORMAT  HALF (default) | FLOAT   of source; OUTPUT_FORMAT is the same
 //          HISTORY_FORMAT as in temporal/history.h
 // Beyond the picture its outermost pixels repeat.
@@ -87,6 +88,7 @@ typedef struct NoisyPicture {
   RESOLVED_TEXELS albedo;
   RefineParams params, albedo_params;
   bool has_albedo;
+  float exposure;  // factor
 } NoisyPicture;
 
 static inline float16 divisor_of(float16 albedo, float16 light) {
@@ -96,7 +98,7 @@ static inline float16 divisor_of(float16 albedo, float16 light) {
 // What a row of the picture, `light`, is divided by.
 static inline LightRow divisors_of(const NoisyPicture* picture, LightRow light, int x, int y) {
   if (!picture->has_albedo) return row_of_ones();
-  const LightRow albedo = light_row(picture->albedo, &picture->albedo_params, x, y);
+  const LightRow albedo = light_row(picture->albedo, &picture->albedo_params, 1.0f, x, y);
   const LightRow divisors = {divisor_of(albedo.red, light.red), divisor_of(albedo.green, light.green),
                              divisor_of(albedo.blue, light.blue)};
   return divisors;
@@ -110,7 +112,7 @@ static inline ToneRow tone_over(LightRow light, LightRow divisors) {
 
 static inline void load_noisy_row(NoisyRow* row, const NoisyPicture* picture, HistoryLayer layer, float noise, int x,
                                   int y) {
-  const LightRow light = light_row(picture->source, &picture->params, x, y);
+  const LightRow light = light_row(picture->source, &picture->params, picture->exposure, x, y);
   const ToneRow t = tone_over(light, divisors_of(picture, light, x, y));
   const float16 rest = 1.0f - max(max(max(t.red, t.green), t.blue), 0.0f);
   const float16 weight = fabs(confidences_around(layer, x, y)) + DENOISED_CONFIDENCE_FLOOR;
@@ -161,7 +163,7 @@ static inline float8 likeness(const NoisyRow* middle, float8 part, int dx, int d
 // Denoises the pixels from (x, y) on, of the row in the middle.
 static inline void denoise_row(const NoisyRow* middle, const NoisyPicture* picture, OUTPUT_TEXELS output, int x,
                                int y) {
-  const LightRow light = light_row(picture->source, &picture->params, x, y);
+  const LightRow light = light_row(picture->source, &picture->params, picture->exposure, x, y);
   const LightRow divisors = divisors_of(picture, light, x, y);
   const ToneRow own = tone_over(light, divisors);
   const float8 part = shown_part(middle), zero = (float8)(0.0f);
@@ -177,17 +179,17 @@ static inline void denoise_row(const NoisyRow* middle, const NoisyPicture* pictu
     }
   }
   store_tone8(output, picture->source, &picture->params, x, y, light, divisors, own, at_pixels(own.red) + red / sum,
-              at_pixels(own.green) + green / sum, at_pixels(own.blue) + blue / sum);
+              at_pixels(own.green) + green / sum, at_pixels(own.blue) + blue / sum, 1.0f / picture->exposure);
 }
 
 __kernel void temporal_denoise(const RefineParams params, const TexelLayout albedo_layout, int has_albedo, float noise,
                                RESOLVED_TEXELS source, RESOLVED_TEXELS albedo, HISTORY_TEXELS history,
-                               OUTPUT_TEXELS output) {
+                               OUTPUT_TEXELS output, __global const Exposure* exposure) {
   const int top = get_global_id(1) * kRefineBlock;
   if (top >= params.height) return;
 
   const HistoryLayer layer = {history, params.width, params.height};
-  NoisyPicture picture = {source, albedo, params, params, has_albedo != 0};
+  NoisyPicture picture = {source, albedo, params, params, has_albedo != 0, exposure->factor};
   picture.albedo_params.source = albedo_layout;
   const int stride = (int)get_global_size(0) * kRefineBlock;
   const int bottom = min(top + kRefineBlock, params.height);

@@ -9,12 +9,14 @@
 //   tiles      in   TileReprojection of each tile, of this frame
 //   history    in   the layer of this frame; of pixels of two layers the far one
 //   alpha      in   ALPHA 1: its alpha, resampled and smoothed as colour is
-//   output     out  RGBA32F or RGBA16F, output extent
+//   output     out  RGBA32F or RGBA16F, output extent: scene light, as all pictures are
+//   exposure   in   Exposure of this frame
 // Options: ALPHA   1 (default) | 0: the picture is opaque
 //          SMOOTH  1 (default) | 0
 //          OUTPUT_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
 // Reference: tests/reference/temporal_display.cpp
 #include "bits.h"
+#include "picture_params.h"
 #include "temporal/constants.h"
 #include "temporal/display.h"
 #include "temporal/history.h"
@@ -127,12 +129,14 @@ static inline void store_pixels(OUTPUT_TEXELS output, TexelLayout layout, int x,
 #endif
 
 __kernel void temporal_display(const TemporalDisplayParams params, __global const TileReprojection* tiles,
-                               HISTORY_TEXELS history, HISTORY_TEXELS alpha, OUTPUT_TEXELS output) {
+                               HISTORY_TEXELS history, HISTORY_TEXELS alpha, OUTPUT_TEXELS output,
+                               __global const Exposure* exposure) {
   const int first_y = get_global_id(1) * kTemporalTile;
   const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
   if (item.first >= item.end || first_y >= params.output_height) return;
 
   const HistoryLayer layer = {history, params.output_width, params.output_height};
+  const float inverse = exposure->inverse;
   const int end_y = min(first_y + kTemporalTile, params.output_height);
   for (int x = item.first; x < item.end; x += item.step) {
     const int count = pixels_from(item, x);
@@ -165,6 +169,7 @@ __kernel void temporal_display(const TemporalDisplayParams params, __global cons
       }
 
       // Store.
+      pixels.shown = times(pixels.shown, (LaneFloat)(inverse));
 #if ALPHA
       const AlphaPlane plane = {alpha, params.output_width, params.output_height};
       const LaneFloat alphas = show_alpha(layer, plane, &display, x, y, min(count, (int)kLanes), smooth, confidence);

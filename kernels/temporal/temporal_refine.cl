@@ -110,35 +110,36 @@ static inline float8 refined(float16 above, float16 same, float16 below, Edges e
 
 // Refines the pixels from (x, y) on, with the five rows around theirs.
 static inline void refine_row(const ToneRow* rows, LightRow light, Strengths by, RESOLVED_TEXELS source,
-                              OUTPUT_TEXELS output, const RefineParams* params, int x, int y) {
+                              OUTPUT_TEXELS output, const RefineParams* params, float inverse, int x, int y) {
   const Edges edges = edges_of(rows);
   const float8 red = refined(rows[1].red, rows[2].red, rows[3].red, edges, by);
   const float8 green = refined(rows[1].green, rows[2].green, rows[3].green, edges, by);
   const float8 blue = refined(rows[1].blue, rows[2].blue, rows[3].blue, edges, by);
-  store_tone8(output, source, params, x, y, light, row_of_ones(), rows[2], red, green, blue);
+  store_tone8(output, source, params, x, y, light, row_of_ones(), rows[2], red, green, blue, inverse);
 }
 
 __kernel void temporal_refine(const RefineParams params, RESOLVED_TEXELS source, HISTORY_TEXELS history,
-                              OUTPUT_TEXELS output) {
+                              OUTPUT_TEXELS output, __global const Exposure* exposure) {
   const int top = get_global_id(1) * kRefineBlock;
   if (top >= params.height) return;
 
   const HistoryLayer layer = {history, params.width, params.height};
   const int stride = (int)get_global_size(0) * kRefineBlock;
   const int bottom = min(top + kRefineBlock, params.height);
+  const float factor = exposure->factor;
   for (int x = get_global_id(0) * kRefineBlock; x < params.width; x += stride) {
     ToneRow rows[5];
-    LightRow own = light_row(source, &params, x, top), next = light_row(source, &params, x, top + 1);
-    rows[1] = tone_of(light_row(source, &params, x, top - 2));
-    rows[2] = tone_of(light_row(source, &params, x, top - 1));
+    LightRow own = light_row(source, &params, factor, x, top), next = light_row(source, &params, factor, x, top + 1);
+    rows[1] = tone_of(light_row(source, &params, factor, x, top - 2));
+    rows[2] = tone_of(light_row(source, &params, factor, x, top - 1));
     rows[3] = tone_of(own);
     rows[4] = tone_of(next);
     for (int y = top; y < bottom; ++y) {
-      const LightRow after = light_row(source, &params, x, y + 2);
+      const LightRow after = light_row(source, &params, factor, x, y + 2);
       for (int i = 0; i < 4; ++i)
         rows[i] = rows[i + 1];
       rows[4] = tone_of(after);
-      refine_row(rows, own, strengths_at(layer, x, y), source, output, &params, x, y);
+      refine_row(rows, own, strengths_at(layer, x, y), source, output, &params, exposure->inverse, x, y);
       own = next;
       next = after;
     }

@@ -20,6 +20,7 @@
 //   tiles           out  TileReprojection of each tile
 //   evidence        out  TileEvidence of each tile
 //   total           out  TotalLight: grows by each tile's part
+//   exposure        in   Exposure of this frame
 // Options: MOTION  1 (default) | 0: nothing moves, and all tiles are rigid
 //          LAYERS  0 (default) | 1: with MOTION 1; where samples are split, a tile has a near layer, too, with a motion
 //                  of its own. Samples of a near layer say nothing of history
@@ -206,10 +207,13 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
                              DEPTH_TEXELS depth, TexelLayout depth_layout, __global const LayerSplit* splits,
                              __global const int* marks, __global const LayerTile* previous_layers,
                              __global LayerTile* layers, __global int* listed, __global TileReprojection* tiles,
-                             __global TileEvidence* evidence, __global TotalLight* total) {
+                             __global TileEvidence* evidence, __global TotalLight* total,
+                             __global const Exposure* exposure) {
   const int first = get_global_id(0), tile_y = get_global_id(1);
   if (first >= params.tiles_x || tile_y >= params.tiles_y) return;
 
+  const ExposedFrame frame = expose(params.frame, exposure);
+  const float change = exposure->change;
   TotalLight sum = {0, 0, 0, 0, 0, 0, 0, {{0}}};
   for (int tile_x = first; tile_x < params.tiles_x; tile_x += (int)get_global_size(0)) {
     const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
@@ -231,9 +235,9 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
     is_split = own.is_split;
 #endif
     const HistoryLayer known = {history, params.output_width, params.output_height};
-    const Past past = {reprojection, known, previous_tiles, is_split ? splits : 0};
+    const Past past = {reprojection, known, previous_tiles, is_split ? splits : 0, change};
     TileEvidence found_evidence = no_evidence();
-    if (!hidden) found_evidence = judge_history(colour, depth, depth_layout, &past, &params, tile, samples);
+    if (!hidden) found_evidence = judge_history(colour, &frame, depth, depth_layout, &past, &params, tile, samples);
     add_means(&sum, &params, found_evidence);
     add_lag(total, &params, found_evidence, tile_x, tile_y);
     tiles[i] = tile;

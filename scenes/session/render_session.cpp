@@ -2,6 +2,7 @@
 #include "session/render_session.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -310,6 +311,7 @@ Status RenderSession::write_frame(std::int64_t index) {
   }
   auto resolved = download_resolved();
   if (!resolved.ok()) return resolved.status();
+  note_clipping(index, path, resolved.value());
   // Colour of 8 bits is the screen's light already.
   const bool shown = options_.resolve.colour == PixelFormat::kRGBA8;
   const tools::Display display = {shown ? ToneMap::kClamp : options_.resolve.output.tone_map,
@@ -330,9 +332,17 @@ Status RenderSession::write_exr_frame(std::int64_t index) {
   if (Status status = write_targets(targets_path, file); !status.ok()) return status;
   auto resolved = download_resolved();
   if (!resolved.ok()) return resolved.status();
+  note_clipping(index, resolved_path, resolved.value());
   files_.push_back(targets_path);
   files_.push_back(resolved_path);
   return tools::write_light(resolved_path, options_.output, resolved.value());
+}
+
+void RenderSession::note_clipping(std::int64_t index, const std::string& path, std::span<const float> rgba) {
+  if (has_clipped_ || tools::format_of(path) != tools::FileFormat::kExr || !tools::exceed_halves(rgba))
+    return;
+  has_clipped_ = true;
+  spdlog::warn("frame {} has light above 65504, the largest half, which is written in its place", index);
 }
 
 Result<std::vector<float>> RenderSession::download_resolved() const {

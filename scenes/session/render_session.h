@@ -7,6 +7,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,8 @@ class RenderSession {
   Status write_frame(std::int64_t index);
   Status write_exr_frame(std::int64_t index);
   Status score_frame();
+  // Says once that a file's halves do not hold all light.
+  void note_clipping(std::int64_t index, const std::string& path, std::span<const float> rgba);
   Result<std::vector<float>> download_resolved() const;
   void collect_reports();
   bool wants_resolved() const;

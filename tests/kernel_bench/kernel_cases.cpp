@@ -50,6 +50,9 @@ void add_passes(std::vector<Case>& cases, Stage& stage, Case what, const Scene& 
     if (passes.back() == nullptr) throw std::logic_error("the plan has no pass " + kernel);
     what.bytes += bytes_of(passes.back()->spec(), largest_extents(scene.settings));
   }
+  if (Pass* const exposure = chain->find("exposure"); exposure != nullptr)
+    PassChain::enqueue(*exposure, chain->frame(scene.current, &scene.previous, outputs, stage.counter()),
+                       nullptr);
   Stage::add(
       cases, std::move(what),
       [chain, passes, &stage, outputs, scene](cl::Event* events) {

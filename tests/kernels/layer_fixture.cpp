@@ -353,8 +353,9 @@ LayerStages::Resolved LayerStages::run_resolve(Rig& rig, const LayerStageInputs&
     trust.push_back(static_cast<float>(value));
   const cl::Buffer open_trust = to_device(trust);
   const cl::Buffer splits = to_device(splits_of(r.splits));
-  const cl::Buffer far = to_device(encode(variant_.history, past.far));
-  const cl::Buffer near = to_device(encode(variant_.history, past.near));
+  const Exposure& exposure = in.stage.exposure;
+  const cl::Buffer far = to_device(encode(variant_.history, before_change(past.far, exposure)));
+  const cl::Buffer near = to_device(encode(variant_.history, before_change(past.near, exposure)));
   const cl::Buffer states = states_to_device(past.states);
   const cl::Buffer tiles_before = to_device(reprojections_of(past.tiles));
   const cl::Buffer layers_before = to_device(to_kernel(past.layers));
@@ -371,6 +372,7 @@ LayerStages::Resolved LayerStages::run_resolve(Rig& rig, const LayerStageInputs&
   const cl::Buffer updated_near = to_device(std::vector<unsigned char>(bytes, 0x7f));
   const cl::Buffer updated_states = to_device(std::vector<unsigned char>(state_bytes, 0x7f));
   const Counter counter = rig.counter();
+  resolve_.set_exposure(exposure);
   resolve_.run(in.stage.frame, in.previous, output, counter,
                {{Resource::kReprojection, in.stage.reprojection},
                 {Resource::kOpenTrust, view_of(open_trust)},

@@ -92,7 +92,7 @@ class MergeHistories : public ::testing::TestWithParam<Formats> {
     const cl::Buffer merged_alpha = buffer(std::vector<unsigned char>(bytes, 0x7f));
     Rig rig;
     PassRig pass(facts(), "merge_histories");
-    pass.set_merges(!other.empty());
+    pass.set_other_exposure(other.empty() ? 0 : 1);
     pass.run(
         {}, {}, extent, {},
         {{Resource::kCentred, rig.image(GetParam().picture, Storage::kBuffer, extent, picture, 1e30, false)},

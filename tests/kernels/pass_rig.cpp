@@ -32,7 +32,7 @@ void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Exten
                   .previous = previous,
                   .jitter_motion = jitter_motion(current, previous),
                   .has_history = true,
-                  .merges = merges_,
+                  .other_exposure = other_exposure_,
                   .albedo = albedo_,
                   .focus = focus_,
                   .focus_extent = facts_.settings.focus.extent,
@@ -41,6 +41,9 @@ void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Exten
                   .display = output,
                   .counter = counter};
   bind_inputs(frame);
+  const cl::Buffer exposure(impl().context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof(Exposure),
+                            &exposure_);
+  frame[Resource::kExposure].memory = exposure();
   for (const auto& [resource, view] : bound)
     frame[resource] = view;
   PassChain::enqueue(*pass_, frame, nullptr);

@@ -9,6 +9,7 @@
 
 #include "kernel_fixture.h"
 #include "passes/pass_chain.h"
+#include "picture_params.h"
 
 namespace quincunx::testing {
 
@@ -29,8 +30,11 @@ class PassRig {
   // Sets the focus for the next run(), until which it stays; null: none.
   void set_focus(const FocusInputs* focus) { focus_ = focus; }
 
-  // Sets whether the runs to come merge two histories.
-  void set_merges(bool merges) { merges_ = merges; }
+  // Sets the exposure of another history, which the runs to come merge; 0: they merge none.
+  void set_other_exposure(float exposure) { other_exposure_ = exposure; }
+
+  // Sets that of the frames to come; 1 at first.
+  void set_exposure(const Exposure& exposure) { exposure_ = exposure; }
 
   // Sets the albedo of the pictures to come; none at first.
   void set_albedo(const ImageView& albedo) { albedo_ = albedo; }
@@ -43,7 +47,8 @@ class PassRig {
  private:
   PlanFacts facts_;
   const FocusInputs* focus_ = nullptr;
-  bool merges_ = false;
+  float other_exposure_ = 0;
+  Exposure exposure_ = {1, 1, 1, 1};
   ImageView albedo_;
   std::unique_ptr<Pass> pass_;
 };

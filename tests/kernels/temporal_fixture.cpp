@@ -154,8 +154,16 @@ PlanFacts TemporalStages::facts(TemporalPreset preset) const {
           settings};
 }
 
+std::vector<Pixel> before_change(std::vector<Pixel> texels, const Exposure& exposure) {
+  for (Pixel& texel : texels) {
+    for (std::size_t c = 0; c < 3; ++c)
+      texel[c] /= static_cast<double>(exposure.change);
+  }
+  return texels;
+}
+
 cl::Buffer TemporalStages::history(const StageInputs& in) const {
-  return to_device(encode(variant_.history, in.reference.history));
+  return to_device(encode(variant_.history, before_change(in.reference.history, in.exposure)));
 }
 
 // Any memory where the kernels read none.
@@ -262,6 +270,8 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   tiles.setArg(12, now);
   tiles.setArg(13, evidence);
   tiles.setArg(14, total);
+  const cl::Buffer exposure = to_device(std::vector<Exposure>{in.exposure});
+  tiles.setArg(15, exposure);
   enqueue_rows(impl().profile.shape, impl().queue, tiles, count,
                columns_per_item(impl().profile.shape, count.width, 1), nullptr);
   const auto reprojections = from_device<TileReprojection>(now, r.before.size());
@@ -355,6 +365,8 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   resolve.setArg(13, updated_alpha);
   set_memory(resolve, 14, view.memory);
   set_memory(resolve, 15, counter.memory);
+  const cl::Buffer exposure = to_device(std::vector<Exposure>{in.exposure});
+  resolve.setArg(16, exposure);
   enqueue_rows(impl().profile.shape, impl().queue, resolve, output, params.columns_per_item, nullptr,
                kTemporalTile);
   Result result{from_device<unsigned char>(updated, bytes), {}, {}, rig.count(counter)};
@@ -388,6 +400,8 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   display.setArg(2, known);
   display.setArg(3, known_alpha);
   set_memory(display, 4, view.memory);
+  const cl::Buffer exposure = to_device(std::vector<Exposure>{in.exposure});
+  display.setArg(5, exposure);
   enqueue_rows(impl().profile.shape, impl().queue, display, output, params.columns_per_item, nullptr,
                kTemporalTile);
   Result result{rig.bytes(view, output), {}, {}, 0};

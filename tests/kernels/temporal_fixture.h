@@ -11,6 +11,7 @@
 #include "layers/layer.h"
 #include "params.h"
 #include "passes/tables.h"
+#include "picture_params.h"
 #include "temporal/temporal_params.h"
 
 namespace quincunx::testing {
@@ -39,6 +40,9 @@ struct StageSpec {
   double outside = 0;
   bool tight = false;
   int parity = -1;  // that of a checkerboard's shaded samples; -1: all are
+  // A power of two: on the device light is this times the reference's exposed light, and the exposure has become so
+  // much less in this frame. Not of RGBA8.
+  double light = 1;
 };
 
 std::string name_of(const StageSpec& spec);
@@ -52,6 +56,7 @@ struct StageInputs {
   FrameInputs frame;
   ImageView reactive_before;
   ImageView reprojection;
+  Exposure exposure = {1, 1, 1, 1};
 };
 
 template <typename Element>
@@ -60,6 +65,9 @@ cl::Buffer to_device(const std::vector<Element>& elements) {
   impl().queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, elements.size() * sizeof(Element), elements.data());
   return buffer;
 }
+
+// Returns texels of history before the exposure changed.
+std::vector<Pixel> before_change(std::vector<Pixel> texels, const Exposure& exposure);
 
 template <typename Element>
 std::vector<Element> from_device(const cl::Buffer& buffer, std::size_t count) {

@@ -206,7 +206,8 @@ std::vector<StageSpec> all_stage_specs(const std::vector<Pattern>& patterns) {
                          .render = render,
                          .previous = {render.width + 2, std::max(render.height - 1, 1)},
                          .colour = pattern,
-                         .seed = seed});
+                         .seed = seed,
+                         .light = pattern == Pattern::kNoise && seed % 3 == 0 ? 4. : 1.});
       }
     }
   }
@@ -214,10 +215,11 @@ std::vector<StageSpec> all_stage_specs(const std::vector<Pattern>& patterns) {
 }
 
 StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
+  const double unit = variant_.colour == PixelFormat::kRGBA8 ? 1 : spec.light;
   std::vector<Pixel> colour = pattern_pixels(spec.colour, spec.render, spec.seed);
   for (Pixel& pixel : colour) {
-    for (double& value : pixel)
-      value = std::abs(value);  // light
+    for (std::size_t c = 0; c < 4; ++c)
+      pixel[c] = std::abs(pixel[c]) * (c < 3 ? unit : 1);  // light
   }
   const TestFrame made =
       make_frame(rig,
@@ -234,8 +236,9 @@ StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
                  colour);
   StageInputs in;
   in.frame = made.inputs;
+  in.exposure.factor = in.exposure.change = static_cast<float>(1 / unit);
   reference::TemporalInputs& out = in.reference;
-  out.frame = made.reference;
+  out.frame = reference::exposed(made.reference, 1 / unit);
   out.parity = spec.parity;
   out.previous_width = spec.previous.width;
   out.previous_height = spec.previous.height;

@@ -112,9 +112,10 @@ TEST(TemporalPass, HistoryThatStandsStillIsCopied) {
   }
 }
 
-// Nor is anything larger than what was valid ever seen.
-TEST(TemporalPass, WhatIsNotFiniteNeverReachesHistory) {
-  const double spoilt[] = {std::nan(""), std::numeric_limits<double>::infinity(), 65504, 1e30};
+// Nor is anything larger than what was light ever seen, or what is less than none.
+TEST(TemporalPass, WhatIsNoLightNeverReachesHistory) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double spoilt[] = {std::nan(""), -kInfinity, -1e30, std::nan("")};
   for (const PixelFormat format : {PixelFormat::kRGBA16F, PixelFormat::kRGBA32F}) {
     const Extent render{39, 20};
     ResolveSettings settings = settings_for({64, 33});

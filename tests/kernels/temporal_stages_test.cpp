@@ -192,6 +192,7 @@ TEST_P(Temporal, DisplayMatchesTheReference) {
   for (const StageSpec& spec : testing::all_stage_specs({Pattern::kNoise})) {
     Rig rig;
     StageInputs in = stages.inputs(rig, spec);
+    in.exposure = {1, 1, 1, 1};
     give_layers(in.reference, spec.seed);
     using Shown = TemporalStages::Shown;
     for (const Shown& shown : {Shown{}, {TemporalPreset::kFast}, {.first = true}}) {

@@ -8,7 +8,7 @@ constexpr int kStep = 8;
 constexpr int kSamples = 4;
 constexpr double kLeastSpeed = 1;  // samples of the previous frame
 constexpr double kMostContrast = .25;
-constexpr double kLeastLight = 1e-6;
+constexpr double kLeastLight = 1e-30;
 
 template <typename Real>
 Real luma_of(const Pixel& colour) {

@@ -6,7 +6,7 @@
 //            e = .02 z + .5 (z_nearest - z_farthest) + 1e-9;
 //            1 inside the previous viewport, 0 a pixel away from it; times 1 - the neighbours' largest reactive value
 //   h0, h1   the previous colour at those places, bilinear, clamped to the range of neighbours and s
-//   s        (b a_mean + a b_mean) / (a + b): a, b the squared differences of left and right, above and below, + 1e-12;
+//   s        (b a_mean + a b_mean) / (a + b): a, b the squared differences of left and right, above and below, + 1e-30;
 //            the plain mean of both where one has a neighbour only
 // It shows the nearest surface where t0 >= .5, the farthest where (1 - t0) t1 >= .5, else the nearer one of the pair
 // whose depths are closer. Of equal ones the first of left, right, above, below counts.
@@ -21,8 +21,8 @@ namespace quincunx::reference {
 namespace {
 
 constexpr double kLargestMotion = 65504;
-constexpr double kLargestDifference = 65504;  // largest difference of colours, in the weight of a pair
-constexpr double kLeastDifference = 1e-12;
+constexpr double kLargestDifference = 1e18;  // largest difference of colours, in the weight of a pair
+constexpr double kLeastDifference = 1e-30;
 
 struct Place {
   int x = 0, y = 0;
@@ -192,7 +192,7 @@ bool is_finite(const Pixel& pixel) {
 template <typename Real>
 struct Pair {
   PixelOf<Real> mean = {};
-  Real difference = 0;  // squared, + 1e-12
+  Real difference = 0;  // squared, + 1e-30
   int count = 0;
 };
 

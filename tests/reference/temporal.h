@@ -181,7 +181,14 @@ TotalLightOf<Real> as(const TotalLight& t) {
   return made;
 }
 
-// Whether a sample takes part: finite, and below the largest half, which stands for overflow.
+// exposure: the factor of exposed light of a frame, after one that had `before` (0: it is the first) and wanted
+// another. `given`: the caller's; 0: there is none.
+double exposure_of(const Frame& frame, double given, double before, double wanted_before);
+
+// Returns the frame in exposed light. What is brighter than halves can hold is the largest float below that.
+Frame exposed(Frame frame, double factor);
+
+// Whether a sample of exposed light takes part: a number, and not as dark as no half can be.
 template <typename Real>
 bool is_valid(const PixelOf<Real>& sample) {
   constexpr double kLargestHalf = 65504;

@@ -133,6 +133,22 @@ TEST(Exr, KeepsNonFiniteValues) {
   EXPECT_EQ(image->at(2, 0, 0), -infinity);
 }
 
+TEST(Exr, HalvesOfFloatsAreNeverInfinite) {
+  const testing::TemporaryFolder folder;
+  const float infinity = std::numeric_limits<float>::infinity();
+  const std::vector<float> rgba = {1e6f, -1e6f, infinity, 1, 65504, 65519, .5f, 1};
+  EXPECT_TRUE(exceed_halves(rgba));
+  EXPECT_FALSE(exceed_halves(std::vector<float>{65504, -65504}));
+  ASSERT_TRUE(write_light(folder.file("a.exr"), {2, 1}, rgba).ok());
+  const Result<LoadedImage> image = read_image(folder.file("a.exr"));
+  ASSERT_TRUE(image.ok());
+  const std::vector<float> wanted = {65504, -65504, 65504, 1, 65504, 65504, .5f, 1};
+  for (int i = 0; i < 8; ++i)
+    EXPECT_EQ(image->at(i / 4, 0, image->channel(std::string(1, "RGBA"[i % 4]))),
+              wanted[static_cast<std::size_t>(i)])
+        << i;
+}
+
 TEST(Exr, ReturnsAttributes) {
   const testing::TemporaryFolder folder;
   const std::vector<float> values = {1};

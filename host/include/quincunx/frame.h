@@ -65,9 +65,12 @@ struct FrameInputs {
   ImageView particle_depth = {};       // R32F: the frame's depth resampled, of a surface that the pixel shows
   ImageView particle_reactive = {};    // R8
   Extent particle_render_extent = {};  // the particles' viewport; any size from 1x1
-  float exposure = 0;  // multiplies linear colour in the present pass; 0: 1; not read with RGBA8
+  // What makes of linear colour the light that is shown, before its curve: the present pass multiplies by it. By it
+  // `temporal`, quincunx:reprojected and sharpening know, too, how bright the scene's unit of light is, which they
+  // measure where neither this nor the image is given. 0: not given, 1 in the present pass. Not read with RGBA8.
+  float exposure = 0;
   // R32F, 1x1, a buffer or an image: another factor of the exposure, made on the device. A value that is not positive
-  // and finite counts as 1.
+  // and finite counts as none.
   ImageView exposure_image = {};
   bool reset = false;  // a cut: nothing of the previous frame may be used
   // Shading::kCheckerboard: pixels (x, y) with (x + y) % 2 == parity are shaded, the others are not read; 0 or 1.

@@ -94,6 +94,11 @@ void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const c
       cl::NDRange(static_cast<std::size_t>(group_x), static_cast<std::size_t>(group_y)), nullptr, event);
 }
 
+void Pass::launch_group(const PassFrame& frame, cl::Event* event) {
+  const cl::NDRange group(static_cast<std::size_t>(shape_.group_width * shape_.group_height));
+  frame.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, group, group, nullptr, event);
+}
+
 void Pass::launch_over_list(const PassFrame& frame, cl::Event* event) {
   const int group = shape_.group_width * shape_.group_height;
   frame.queue.enqueueNDRangeKernel(kernel_, cl::NullRange,

@@ -44,7 +44,7 @@ struct PassFrame {
   FrameInputs previous = {};  // those of the previous frame; `inputs` where there is no history
   Vec2 jitter_motion = {};    // jitter_motion() since the last frame, whether or not that counts as history
   bool has_history = false;
-  bool merges = false;                 // facts.two_way: there is another history
+  float other_exposure = 0;            // facts.two_way: of the other history; 0: there is none
   bool keeps_merged = false;           // the same: the merged one is read afterwards
   ImageView albedo = {};               // of what the picture shows, as that lies; null: it is not known
   const FocusInputs* focus = nullptr;  // null: the frame has none
@@ -111,6 +111,9 @@ class Pass {
   void launch(const PassFrame& frame, Extent extent, int columns, cl::Event* event, int rows = 1) {
     enqueue_rows(shape_, frame.queue, kernel_, extent, columns, event, rows);
   }
+
+  // Enqueues one work-group.
+  void launch_group(const PassFrame& frame, cl::Event* event);
 
   // Enqueues as many work-items as the device has at work at once. They share the tiles of a list among them, whose
   // length only the device knows (layers/tile_runs.h).

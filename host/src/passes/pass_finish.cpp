@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The passes that are made of the finished picture: sharpen, lay_focus, cross_fade, present.
+// The passes that are made of the finished picture: sharpen, lay_focus, cross_fade, present; and exposure.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class SharpenPass : public Pass {
                                .output = layout_of(frame[Resource::kResolved]),
                                .columns_per_item = columns_per_item(shape(), frame.output.width),
                                .sharpness = settings().sharpness};
-    bind(frame, params, Resource::kUnsharpened, Resource::kResolved);
+    bind(frame, params, Resource::kUnsharpened, Resource::kResolved, Resource::kExposure);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -41,13 +41,13 @@ void plan_sharpen(const PlanFacts& facts, PassList& list) {
         {"sharpen", settings.sharpness > 0 ? "the view is no picture" : "sharpness is 0"});
     return;
   }
-  list.passes.push_back(
-      {.kernel = "sharpen",
-       .options =
-           fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.output.linear)),
-       .reason = "sharpness is wanted: contrast between neighbours, within their range",
-       .uses = uses_of(settings, {.reads = {Resource::kUnsharpened}, .writes = {Resource::kResolved}}),
-       .make = make_pass<SharpenPass>});
+  list.passes.push_back({.kernel = "sharpen",
+                         .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}",
+                                                precision_of(settings.output.linear)),
+                         .reason = "sharpness is wanted: contrast between neighbours, within their range",
+                         .uses = uses_of(settings, {.reads = {Resource::kUnsharpened, Resource::kExposure},
+                                                    .writes = {Resource::kResolved}}),
+                         .make = make_pass<SharpenPass>});
 }
 
 // lay_focus: the focus's picture over the picture, within its rectangles.
@@ -190,16 +190,87 @@ void plan_cross_fade(const PlanFacts& facts, PassList& list) {
        .frames = Frames::kFading});
 }
 
+// The factor of a frame's exposure_image, where kernels read it.
+
+namespace {
+
+class ExposureFactor {
+ public:
+  explicit ExposureFactor(const PassSetup& setup)
+      : none_(setup.device.context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof(float), &zero_),
+        given_(setup.device.context, CL_MEM_READ_ONLY, sizeof(float)) {}
+
+  // Copied, so that one kernel serves buffers and images. 0 where there is none.
+  const cl::Buffer& of(const PassFrame& frame, const PlanFacts& facts) const {
+    const ImageView& image = frame.inputs.exposure_image;
+    if (!image || facts.is_display_referred()) return none_;
+    if (image.storage == Storage::kImage) {
+      frame.queue.enqueueCopyImageToBuffer(borrow<cl::Image2D>(image.memory), given_, {0, 0, 0}, {1, 1, 1},
+                                           0);
+    } else {
+      frame.queue.enqueueCopyBuffer(borrow<cl::Buffer>(image.memory), given_, image.offset, 0, sizeof(float));
+    }
+    return given_;
+  }
+
+ private:
+  float zero_ = 0;
+  cl::Buffer none_;
+  cl::Buffer given_;
+};
+
+}  // namespace
+
+// exposure: what makes exposed light of the frame's.
+
+namespace {
+
+class ExposurePass : public Pass {
+ public:
+  ExposurePass(const PassSetup& setup, const PassSpec& spec) : Pass(setup, spec), image_(setup) {}
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    constexpr float kOfTheScreen = .8f;  // makes a factor of 1
+    const Extent render = frame.inputs.render_extent;
+    const ExposureParams params{
+        .width = render.width,
+        .height = render.height,
+        .texels_x = std::clamp(render.width / kExposureColumns, 1, int{kExposureTexels}),
+        .texels_y = std::clamp(render.height / kExposureRows, 1, int{kExposureTexels}),
+        .colour = layout_of(frame[Resource::kColour]),
+        .given = facts().is_display_referred() ? kOfTheScreen : frame.inputs.exposure,
+        .follows = facts().accumulates() ? 1 : 0};
+    bind(frame, params, Resource::kColour, image_.of(frame, facts()), Resource::kPreviousExposure,
+         Resource::kExposure);
+    launch_group(frame, event);
+  }
+
+ private:
+  ExposureFactor image_;
+};
+
+}  // namespace
+
+void plan_exposure(const PlanFacts& facts, PassList& list) {
+  if (!facts.exposes()) return;
+  PassSpec spec{
+      .kernel = "exposure",
+      .options = colour_options(facts.settings),
+      .reason = "how bright the scene is: rules of light are those of exposed light",
+      .uses = uses_of(facts.settings, {.reads = {Resource::kColour}, .writes = {Resource::kExposure}}),
+      .make = make_pass<ExposurePass>};
+  // Other methods keep nothing in exposed light, and a chunk of their frames is as the whole run has it.
+  if (facts.accumulates()) spec.uses.push_back(use(Resource::kPreviousExposure, facts.settings));
+  list.passes.push_back(std::move(spec));
+}
+
 // present: the picture as 8-bit sRGB: exposed, tone mapped, dithered.
 
 namespace {
 
 class PresentPass : public Pass {
  public:
-  PresentPass(const PassSetup& setup, const PassSpec& spec)
-      : Pass(setup, spec),
-        one_(setup.device.context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof(float), &factor_one_),
-        given_(setup.device.context, CL_MEM_READ_ONLY, sizeof(float)) {}
+  PresentPass(const PassSetup& setup, const PassSpec& spec) : Pass(setup, spec), image_(setup) {}
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const ImageView& source = frame[shown_of(facts())];
@@ -213,27 +284,12 @@ class PresentPass : public Pass {
         .counter = frame.counter.index,
         .columns_per_item = columns_per_item(shape(), frame.display.width, 1),
         .exposure = exposure == 0 ? 1 : exposure};
-    bind(frame, params, source, exposure_of(frame), presented, frame.counter);
+    bind(frame, params, source, image_.of(frame, facts()), presented, frame.counter);
     launch(frame, frame.display, params.columns_per_item, event);
   }
 
  private:
-  // Copied, so that one kernel serves buffers and images.
-  const cl::Buffer& exposure_of(const PassFrame& frame) const {
-    const ImageView& image = frame.inputs.exposure_image;
-    if (!image || facts().is_display_referred()) return one_;
-    if (image.storage == Storage::kImage) {
-      frame.queue.enqueueCopyImageToBuffer(borrow<cl::Image2D>(image.memory), given_, {0, 0, 0}, {1, 1, 1},
-                                           0);
-    } else {
-      frame.queue.enqueueCopyBuffer(borrow<cl::Buffer>(image.memory), given_, image.offset, 0, sizeof(float));
-    }
-    return given_;
-  }
-
-  float factor_one_ = 1;
-  cl::Buffer one_;
-  cl::Buffer given_;
+  ExposureFactor image_;
 };
 
 const char* curve(ToneMap tone_map) {

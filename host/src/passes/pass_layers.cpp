@@ -169,7 +169,7 @@ class ResolveLayersPass : public Pass {
          Resource::kPreviousLayerStates, Resource::kPreviousTileReprojection, Resource::kPreviousLayerTiles,
          Resource::kTileReprojection, Resource::kLayerTiles, Resource::kTileLight, Resource::kLayeredTileList,
          Resource::kTotalLight, Resource::kHistory, Resource::kHistoryAlpha, Resource::kNearHistory,
-         Resource::kLayerStates, frame.counter);
+         Resource::kLayerStates, frame.counter, Resource::kExposure);
     launch_over_list(frame, event);
   }
 };
@@ -190,7 +190,7 @@ void plan_resolve_layers(const PlanFacts& facts, PassList& list) {
                      Resource::kPreviousNearHistory, Resource::kPreviousLayerStates,
                      Resource::kPreviousTileReprojection, Resource::kPreviousLayerTiles,
                      Resource::kTileReprojection, Resource::kLayerTiles, Resource::kTileLight,
-                     Resource::kLayeredTileList, Resource::kTotalLight},
+                     Resource::kLayeredTileList, Resource::kTotalLight, Resource::kExposure},
            .writes = {Resource::kHistory, Resource::kNearHistory, Resource::kLayerStates}}),
       .make = make_pass<ResolveLayersPass>,
       .frames = Frames::kSparse,
@@ -229,7 +229,7 @@ class DisplayLayersPass : public Pass {
         history_samples(frame.inputs, frame.output, layout_of(frame[Resource::kDepth]));
     bind(frame, params, now, Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
          Resource::kLayeredTileList, Resource::kTotalLight, Resource::kHistory, Resource::kHistoryAlpha,
-         Resource::kNearHistory, Resource::kLayerStates, shown);
+         Resource::kNearHistory, Resource::kLayerStates, shown, Resource::kExposure);
     launch_over_list(frame, event);
   }
 };
@@ -239,15 +239,16 @@ class DisplayLayersPass : public Pass {
 void plan_display_layers(const PlanFacts& facts, PassList& list) {
   if (!facts.has_layers() || facts.settings.temporal.view == TemporalView::kFar) return;
   const ResolveSettings& settings = facts.settings;
-  PassSpec spec{.kernel = "display_layers",
-                .reason = "the second layer: the near one laid over the picture",
-                .uses = uses_of(
-                    settings, {.reads = {Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
-                                         Resource::kLayeredTileList, Resource::kTotalLight,
-                                         Resource::kHistory, Resource::kNearHistory, Resource::kLayerStates},
-                               .writes = {centred_of(facts)}}),
-                .make = make_pass<DisplayLayersPass>,
-                .frames = Frames::kSparse};
+  PassSpec spec{
+      .kernel = "display_layers",
+      .reason = "the second layer: the near one laid over the picture",
+      .uses =
+          uses_of(settings, {.reads = {Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
+                                       Resource::kLayeredTileList, Resource::kTotalLight, Resource::kHistory,
+                                       Resource::kNearHistory, Resource::kLayerStates, Resource::kExposure},
+                             .writes = {centred_of(facts)}}),
+      .make = make_pass<DisplayLayersPass>,
+      .frames = Frames::kSparse};
   spec.add_where(facts.accumulates_alpha(), "ALPHA", settings, {.reads = {Resource::kHistoryAlpha}});
   spec.add_options(fmt::format("-D VIEW={} {} -D HISTORY_FORMAT={}",
                                layer_view_option(settings.temporal.view), scale_options(settings),

@@ -44,7 +44,7 @@ class TemporalTilesPass : public Pass {
          Resource::kPreviousTileReprojection, Resource::kDepth, layout_of(frame[Resource::kDepth]),
          Resource::kSplits, Resource::kSplitMarks, Resource::kPreviousLayerTiles, Resource::kLayerTiles,
          Resource::kLayeredTileList, Resource::kTileReprojection, Resource::kTileEvidence,
-         Resource::kTotalLight);
+         Resource::kTotalLight, Resource::kExposure);
     launch(frame, tiles, columns_per_item(shape(), tiles.width, 1), event);
   }
 };
@@ -54,14 +54,15 @@ class TemporalTilesPass : public Pass {
 void plan_temporal_tiles(const PlanFacts& facts, PassList& list) {
   if (!facts.accumulates()) return;
   const ResolveSettings& settings = facts.settings;
-  PassSpec spec{.kernel = "temporal_tiles",
-                .reason = "the method: which tiles move as a whole",
-                .uses = uses_of(settings, {.reads = {Resource::kColour, Resource::kPreviousHistory,
-                                                     Resource::kPreviousTileReprojection},
-                                           .writes = {Resource::kTileReprojection, Resource::kTileEvidence},
-                                           .sums = {Resource::kTotalLight}}),
-                .make = make_pass<TemporalTilesPass>,
-                .frames = Frames::kSparse};
+  PassSpec spec{
+      .kernel = "temporal_tiles",
+      .reason = "the method: which tiles move as a whole",
+      .uses = uses_of(settings, {.reads = {Resource::kColour, Resource::kPreviousHistory,
+                                           Resource::kPreviousTileReprojection, Resource::kExposure},
+                                 .writes = {Resource::kTileReprojection, Resource::kTileEvidence},
+                                 .sums = {Resource::kTotalLight}}),
+      .make = make_pass<TemporalTilesPass>,
+      .frames = Frames::kSparse};
   spec.add_where(facts.reprojects(), "MOTION", settings, {.reads = {Resource::kReprojection}});
   spec.add_where(
       facts.has_layers(), "LAYERS", settings,
@@ -142,7 +143,7 @@ class ResolveTemporalPass : public Pass {
          Resource::kReprojection, Resource::kReactive, Resource::kPreviousReactive,
          Resource::kPreviousHistory, Resource::kPreviousHistoryAlpha, Resource::kPreviousTileReprojection,
          Resource::kTileReprojection, Resource::kTileLight, Resource::kLayerTiles, Resource::kHistory,
-         Resource::kHistoryAlpha, shown, frame.counter);
+         Resource::kHistoryAlpha, shown, frame.counter, Resource::kExposure);
     launch(frame, frame.output, params.columns_per_item, event, kTemporalTile);
   }
 };
@@ -166,15 +167,16 @@ int taps_of(const PlanFacts& facts) {
 void plan_resolve_temporal(const PlanFacts& facts, PassList& list) {
   if (!facts.accumulates()) return;
   const ResolveSettings& settings = facts.settings;
-  PassSpec spec{.kernel = "resolve_temporal",
-                .reason = "the method: this frame added to the history",
-                .uses = uses_of(settings, {.reads = {Resource::kColour, Resource::kPreviousHistory,
-                                                     Resource::kPreviousTileReprojection,
-                                                     Resource::kTileReprojection, Resource::kTileLight},
-                                           .writes = {Resource::kHistory}}),
-                .make = make_pass<ResolveTemporalPass>,
-                .frames = Frames::kSparse,
-                .registers = 64};
+  PassSpec spec{
+      .kernel = "resolve_temporal",
+      .reason = "the method: this frame added to the history",
+      .uses = uses_of(settings, {.reads = {Resource::kColour, Resource::kPreviousHistory,
+                                           Resource::kPreviousTileReprojection, Resource::kTileReprojection,
+                                           Resource::kTileLight, Resource::kExposure},
+                                 .writes = {Resource::kHistory}}),
+      .make = make_pass<ResolveTemporalPass>,
+      .frames = Frames::kSparse,
+      .registers = 64};
   spec.add_where(facts.accumulates_alpha(), "ALPHA", settings,
                  {.reads = {Resource::kPreviousHistoryAlpha}, .writes = {Resource::kHistoryAlpha}});
   spec.add_where(facts.reprojects(), "MOTION", settings, {.reads = {Resource::kReprojection}});
@@ -207,7 +209,7 @@ class TemporalDisplayPass : public Pass {
     const Resource history = merged ? Resource::kMergedHistory : Resource::kHistory;
     TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
     bind(frame, params, merged ? Resource::kCentredTiles : Resource::kTileReprojection, history,
-         merged ? Resource::kMergedAlpha : Resource::kHistoryAlpha, shown);
+         merged ? Resource::kMergedAlpha : Resource::kHistoryAlpha, shown, Resource::kExposure);
     launch(frame, frame.output, params.columns_per_item, event, kTemporalTile);
   }
 };
@@ -230,9 +232,11 @@ PassSpec display_spec(const PlanFacts& facts, const Touched& touched, Resource a
 
 void plan_temporal_display(const PlanFacts& facts, PassList& list) {
   if (!facts.displays_history()) return;
-  list.passes.push_back(display_spec(
-      facts, {.reads = {Resource::kTileReprojection, Resource::kHistory}, .writes = {centred_of(facts)}},
-      Resource::kHistoryAlpha));
+  list.passes.push_back(
+      display_spec(facts,
+                   {.reads = {Resource::kTileReprojection, Resource::kHistory, Resource::kExposure},
+                    .writes = {centred_of(facts)}},
+                   Resource::kHistoryAlpha));
 }
 
 // merge_histories: the histories of frames before and after, made one; its picture.
@@ -248,10 +252,10 @@ class MergeHistoriesPass : public Pass {
                              .height = frame.output.height,
                              .centred = layout_of(frame[Resource::kCentred]),
                              .columns_per_item = columns_per_item(shape(), frame.output.width),
-                             .has_other = frame.merges ? 1 : 0};
+                             .other_exposure = frame.other_exposure};
     bind(frame, params, Resource::kCentred, Resource::kHistory, Resource::kNearHistory,
          Resource::kLayerStates, Resource::kOtherHistory, Resource::kOtherAlpha, Resource::kMergedHistory,
-         Resource::kMergedAlpha);
+         Resource::kMergedAlpha, Resource::kExposure);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -261,13 +265,14 @@ class MergeHistoriesPass : public Pass {
 void plan_merge_histories(const PlanFacts& facts, PassList& list) {
   if (!facts.two_way) return;
   const ResolveSettings& settings = facts.settings;
-  PassSpec merge{.kernel = "merge_histories",
-                 .reason = "both ways: the histories of frames before and after made one",
-                 .uses = uses_of(settings, {.reads = {Resource::kCentred, Resource::kHistory},
-                                            .writes = {Resource::kMergedHistory},
-                                            .updates = {Resource::kOtherHistory}}),
-                 .make = make_pass<MergeHistoriesPass>,
-                 .frames = Frames::kSparse};
+  PassSpec merge{
+      .kernel = "merge_histories",
+      .reason = "both ways: the histories of frames before and after made one",
+      .uses = uses_of(settings, {.reads = {Resource::kCentred, Resource::kHistory, Resource::kExposure},
+                                 .writes = {Resource::kMergedHistory},
+                                 .updates = {Resource::kOtherHistory}}),
+      .make = make_pass<MergeHistoriesPass>,
+      .frames = Frames::kSparse};
   if (facts.has_layers()) {
     for (const Resource layer : {Resource::kNearHistory, Resource::kLayerStates})
       merge.uses.push_back(use(layer, settings));
@@ -279,7 +284,7 @@ void plan_merge_histories(const PlanFacts& facts, PassList& list) {
                                 precision_of(settings.temporal.history)));
   list.passes.push_back(std::move(merge));
   list.passes.push_back(display_spec(facts,
-                                     {.reads = {Resource::kMergedHistory},
+                                     {.reads = {Resource::kMergedHistory, Resource::kExposure},
                                       .writes = {shown_history_of(facts)},
                                       .sums = {Resource::kCentredTiles}},
                                      Resource::kMergedAlpha));
@@ -308,7 +313,8 @@ class TemporalDenoisePass : public Pass {
     const Resource denoised = denoised_of(facts());
     const ImageView& albedo = frame.albedo ? frame.albedo : frame[Resource::kNoisy];
     bind(frame, refine_params(frame, Resource::kNoisy, denoised), layout_of(albedo), frame.albedo ? 1 : 0,
-         facts().settings.temporal.noise, Resource::kNoisy, albedo, displayed_history_of(facts()), denoised);
+         facts().settings.temporal.noise, Resource::kNoisy, albedo, displayed_history_of(facts()), denoised,
+         Resource::kExposure);
     const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
     launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
   }
@@ -320,7 +326,7 @@ class TemporalRefinePass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     bind(frame, refine_params(frame, Resource::kUnrefined, picture()), Resource::kUnrefined,
-         displayed_history_of(facts()), picture());
+         displayed_history_of(facts()), picture(), Resource::kExposure);
     const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
     launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
   }
@@ -336,8 +342,9 @@ void plan_temporal_denoise(const PlanFacts& facts, PassList& list) {
        .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0} -D HISTORY_FORMAT={1}",
                               precision_of(settings.output.linear), precision_of(settings.temporal.history)),
        .reason = "the frames' noise: pixels become means of such around them as differ by chance alone",
-       .uses = uses_of(settings, {.reads = {Resource::kNoisy, displayed_history_of(facts)},
-                                  .writes = {denoised_of(facts)}}),
+       .uses =
+           uses_of(settings, {.reads = {Resource::kNoisy, displayed_history_of(facts), Resource::kExposure},
+                              .writes = {denoised_of(facts)}}),
        .make = make_pass<TemporalDenoisePass>,
        .frames = Frames::kSparse});
 }
@@ -350,8 +357,9 @@ void plan_temporal_refine(const PlanFacts& facts, PassList& list) {
        .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0} -D HISTORY_FORMAT={1}",
                               precision_of(settings.output.linear), precision_of(settings.temporal.history)),
        .reason = "the preset, or both ways: sharpened, and smoothed along edges where little is known",
-       .uses = uses_of(settings, {.reads = {Resource::kUnrefined, displayed_history_of(facts)},
-                                  .writes = {picture_of(facts)}}),
+       .uses = uses_of(settings,
+                       {.reads = {Resource::kUnrefined, displayed_history_of(facts), Resource::kExposure},
+                        .writes = {picture_of(facts)}}),
        .make = make_pass<TemporalRefinePass>,
        .frames = Frames::kSparse});
 }

@@ -126,7 +126,7 @@ class ResolveReprojectedPass : public Pass {
                                    .falloff1_y = falloff(before.height, extent.height)};
     bind(frame, params, tables.get(frame.queue, frame.key()), tables.get(frame.queue, frame.previous_key()),
          Resource::kColour, Resource::kPreviousColour, Resource::kReprojection, Resource::kReactive,
-         Resource::kPreviousReactive, picture(), frame.counter);
+         Resource::kPreviousReactive, picture(), frame.counter, Resource::kExposure);
     launch(frame, extent, params.columns_per_item, event);
   }
 };
@@ -136,12 +136,13 @@ class ResolveReprojectedPass : public Pass {
 void plan_resolve_reprojected(const PlanFacts& facts, PassList& list) {
   if (!facts.has_form(TwoFrameForm::kReprojected)) return;
   const ResolveSettings& settings = facts.settings;
-  PassSpec spec{.kernel = "resolve_reprojected",
-                .reason = "the method: this frame and the previous one where it moved to",
-                .uses = uses_of(settings, {.reads = {Resource::kColour, Resource::kPreviousColour},
-                                           .writes = {picture_of(facts)}}),
-                .make = make_pass<ResolveReprojectedPass>,
-                .frames = Frames::kWithHistory};
+  PassSpec spec{
+      .kernel = "resolve_reprojected",
+      .reason = "the method: this frame and the previous one where it moved to",
+      .uses = uses_of(settings, {.reads = {Resource::kColour, Resource::kPreviousColour, Resource::kExposure},
+                                 .writes = {picture_of(facts)}}),
+      .make = make_pass<ResolveReprojectedPass>,
+      .frames = Frames::kWithHistory};
   spec.add_where(facts.reprojects(), "MOTION", settings, {.reads = {Resource::kReprojection}});
   // Where samples are reprojected, that already holds what reactive values take.
   spec.add_where(!facts.reprojects() && facts.reads_reactive(), "REACTIVE", settings,

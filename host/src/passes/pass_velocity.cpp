@@ -170,7 +170,8 @@ class FarMatchPass : public Pass {
         .to_previous_y = static_cast<float>(previous.render_extent.height),
         .units = static_cast<float>(std::min(1024., kMost / (kSamples * static_cast<double>(cells.area()))))};
     bind(frame, params, Resource::kDepth, Resource::kPreviousDepth, Resource::kDrawnVelocity,
-         Resource::kColour, Resource::kPreviousColour, Resource::kFarMotion, Resource::kFarMatch);
+         Resource::kColour, Resource::kPreviousColour, Resource::kFarMotion, Resource::kFarMatch,
+         Resource::kExposure);
     launch(frame, cells, 1, event);
   }
 };
@@ -201,7 +202,8 @@ void plan_far_motion(const PlanFacts& facts, PassList& list) {
                  .reason = "whether that explains the colour of what is infinitely far away",
                  .uses = uses_of(settings, {.reads = {Resource::kDrawnVelocity, Resource::kDepth,
                                                       Resource::kPreviousDepth, Resource::kColour,
-                                                      Resource::kPreviousColour, Resource::kFarMotion},
+                                                      Resource::kPreviousColour, Resource::kFarMotion,
+                                                      Resource::kExposure},
                                             .sums = {Resource::kFarMatch}}),
                  .make = make_pass<FarMatchPass>};
   if (settings.targets.storage == Storage::kBuffer)

@@ -149,11 +149,14 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs*
   const std::size_t at = static_cast<std::size_t>(counted.index) * sizeof(zero);
   queue.enqueueFillBuffer(counter, zero, at, sizeof(zero));
   PassFrame frame = picture.frame(inputs, native, counted);
-  frame.merges = merges;
+  frame.other_exposure = other_exposure;
   frame.keeps_merged = keeps;
   FocusInputs laid;  // outlives the frame
   if (focus != nullptr) {
-    region->run(*focus, counted, slot.report, slot.passes.data());
+    FocusInputs exposed = *focus;
+    exposed.frame.exposure = inputs.exposure;
+    exposed.frame.exposure_image = inputs.exposure_image;
+    region->run(exposed, counted, slot.report, slot.passes.data());
     laid = native_focus(settings, *focus);
     region->lay_over(frame, laid);
   } else if (region) {

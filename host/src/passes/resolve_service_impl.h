@@ -57,7 +57,8 @@ struct ResolveService::Impl {
                        const FrameSync& sync);
   ClearRegionPass* clear_pass(const ImageView& image) const;
   // What TwoWay does, in two_way.cpp.
-  FrameReport show(const FrameInputs& inputs, const FrameOutputs& outputs, const ImageView& albedo);
+  FrameReport show(const FrameInputs& inputs, float exposure, const FrameOutputs& outputs,
+                   const ImageView& albedo);
   Status write(const KeptHistory& kept, Resource texels, Resource alpha);
   Status read_merged(KeptHistory& kept);
 
@@ -68,8 +69,9 @@ struct ResolveService::Impl {
   cl::Buffer counter;                 // numbers of non-finite pixels, one uint a slot of the ring
   FrameRing ring;
   FrameObserver observer;  // may be empty
-  // For TwoWay: whether the next frame's history is merged with another one, and read; the inputs of blur.
-  bool merges = false;
+  // For TwoWay: the exposure of another history, with which the next frame's is merged, or 0; whether that is read; the
+  // inputs of blur.
+  float other_exposure = 0;
   bool keeps = false;
   Image shown_velocity, shown_depth;
 };

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "passes/two_way.h"
 
+#include <cstddef>
 #include <vector>
 
 #include "device/opencl.h"
 #include "passes/resolve_service_impl.h"
+#include "picture_params.h"
 #include "plan/inputs.h"
 
 namespace quincunx {
@@ -42,13 +44,16 @@ Status ResolveService::Impl::read_merged(KeptHistory& kept) {
                pixels * bytes_per_pixel(settings.temporal.history), kept.texels);
     read_bytes(device.impl()->queue, chain.newest(Resource::kMergedAlpha), pixels * alpha_bytes(settings),
                kept.alpha);
+    device.impl()->queue.enqueueReadBuffer(borrow<cl::Buffer>(chain.newest(Resource::kExposure).memory),
+                                           CL_TRUE, offsetof(Exposure, factor), sizeof(float),
+                                           &kept.exposure);
     return {};
   } catch (...) {
     return caught("reading a history", device.info().name);
   }
 }
 
-FrameReport ResolveService::Impl::show(const FrameInputs& inputs, const FrameOutputs& outputs,
+FrameReport ResolveService::Impl::show(const FrameInputs& inputs, float exposure, const FrameOutputs& outputs,
                                        const ImageView& albedo) {
   FrameReport refused;
   try {
@@ -64,6 +69,9 @@ FrameReport ResolveService::Impl::show(const FrameInputs& inputs, const FrameOut
     const FrameOutputs made = native_outputs(picture.plan().settings, outputs);
     PassFrame frame = picture.chain().frame(native, nullptr, made, counted);
     frame.albedo = albedo;
+    const Exposure shown = {exposure, 1 / exposure, 1, exposure};
+    queue.enqueueWriteBuffer(borrow<cl::Buffer>(frame[Resource::kExposure].memory), CL_TRUE, 0, sizeof(shown),
+                             &shown);
     frame[Resource::kVelocity] = shown_velocity.view();
     frame[Resource::kDepth] = shown_depth.view();
     picture.chain().show(frame, made, slot.report, slot.passes.data());
@@ -93,7 +101,7 @@ FrameReport TwoWay::add(ResolveService& service, const FrameInputs& inputs, bool
   FrameReport report;
   if (merges) report.status = impl.write(*kept, Resource::kOtherHistory, Resource::kOtherAlpha);
   if (!report.ok()) return report;
-  impl.merges = merges;
+  impl.other_exposure = merges ? kept->exposure : 0;
   impl.keeps = kept != nullptr;
   report = impl.dispatch(inputs, nullptr, {}, {});
   if (!report.ok() || kept == nullptr) return report;
@@ -114,8 +122,9 @@ Status TwoWay::turn(ResolveService& backward, const ResolveService& forward) {
   const PassChain& from = forward.impl_->picture.chain();
   const PassChain& to = backward.impl_->picture.chain();
   try {
-    for (const Resource kept : {Resource::kHistory, Resource::kHistoryAlpha, Resource::kTileReprojection,
-                                Resource::kLayerTiles, Resource::kNearHistory, Resource::kLayerStates}) {
+    for (const Resource kept :
+         {Resource::kExposure, Resource::kHistory, Resource::kHistoryAlpha, Resource::kTileReprojection,
+          Resource::kLayerTiles, Resource::kNearHistory, Resource::kLayerStates}) {
       const ImageView source = from.newest(kept);
       if (!source) continue;
       const auto memory = borrow<cl::Buffer>(source.memory);
@@ -139,7 +148,7 @@ FrameReport TwoWay::show(ResolveService& service, const FrameInputs& inputs, con
     if (report.ok())
       report.status = impl.device.upload(impl.shown_depth.view(), inputs.render_extent, kept.depth.data());
   }
-  return report.ok() ? impl.show(inputs, outputs, albedo) : report;
+  return report.ok() ? impl.show(inputs, kept.exposure, outputs, albedo) : report;
 }
 
 }  // namespace quincunx

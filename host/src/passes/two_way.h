@@ -18,6 +18,7 @@ namespace quincunx {
 // format, and alpha where the plan accumulates it; the frame's velocity and depth where the plan blurs. Used again, it
 // keeps its memory.
 struct KeptHistory {
+  float exposure = 0;  // what multiplied light to be that of `texels`
   std::vector<std::byte> texels, alpha, velocity, depth;
 };
 

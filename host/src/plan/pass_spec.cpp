@@ -111,6 +111,7 @@ struct OwnResource {
 };
 
 constexpr OwnResource kOwnResources[] = {
+    {Resource::kExposure, "exposure", Area::kWhole, {.bytes = sizeof(Exposure)}, Resource::kPreviousExposure},
     {Resource::kContentSums, "content sums", Area::kWhole, {.bytes = sizeof(ContentSums)}},
     {Resource::kMotionSums, "motion sums", Area::kWhole, {.bytes = sizeof(MotionSums)}},
     {Resource::kFarSums, "far sums", Area::kFarCells, {.bytes = sizeof(FarSums)}},
@@ -419,6 +420,7 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     // The frame, completed.
     plan_overlay_particles,
     plan_resolve_checkerboard,
+    plan_exposure,
     plan_velocity_from_depth,
     plan_undilate_velocity,
     plan_far_motion,

@@ -163,6 +163,7 @@ std::optional<Resource> unresized(const std::vector<PassSpec>& passes);
 void plan_convert_inputs(const PlanFacts& facts, PassList& list);
 void plan_overlay_particles(const PlanFacts& facts, PassList& list);
 void plan_resolve_checkerboard(const PlanFacts& facts, PassList& list);
+void plan_exposure(const PlanFacts& facts, PassList& list);
 void plan_velocity_from_depth(const PlanFacts& facts, PassList& list);
 void plan_undilate_velocity(const PlanFacts& facts, PassList& list);
 void plan_far_motion(const PlanFacts& facts, PassList& list);

@@ -73,6 +73,10 @@ struct PlanFacts {
   }
   bool resizes_history() const { return is_dual() && accumulates(); }
   bool accumulates_alpha() const { return shows_picture() && accumulates() && !needs.background; }
+  // Some pass has rules of exposed light.
+  bool exposes() const {
+    return accumulates() || has_form(TwoFrameForm::kReprojected) || sharpens() || fits_sky();
+  }
   bool sharpens() const { return settings.sharpness > 0 && shows_picture(); }
   bool has_focus() const { return settings.focus.extent != Extent{} && shows_picture(); }
   bool blurs() const { return settings.blur.shutter > 0 && has_velocity(); }

@@ -14,8 +14,6 @@
 namespace quincunx::tools {
 namespace {
 
-constexpr float kLargestHalf = 65504;
-
 // NaN counts as 0, as everywhere.
 float finite(float light) {
   return std::isnan(light) ? 0.0f : std::clamp(light, -kLargestHalf, kLargestHalf);

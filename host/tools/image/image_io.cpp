@@ -148,6 +148,11 @@ Status write_picture(const std::string& path, Extent extent, const std::uint8_t*
                                            attributes));
 }
 
+bool exceed_halves(std::span<const float> values) {
+  return std::any_of(values.begin(), values.end(),
+                     [](float value) { return std::abs(value) > kLargestHalf; });
+}
+
 Status write_light(const std::string& path, Extent extent, std::span<const float> rgba, ChannelType stored,
                    const Display& display, std::span<const Attribute> attributes) {
   if (Status status = check_extent(path, extent); !status.ok()) return status;

@@ -71,6 +71,7 @@ Result<std::vector<std::uint8_t>> encode_png(Extent extent, int channels,
                                              std::span<const std::uint8_t> texels);
 
 enum class ChannelType : std::uint8_t { kHalf, kFloat };
+inline constexpr float kLargestHalf = 65504;
 
 constexpr std::size_t bytes_of(ChannelType type) {
   return type == ChannelType::kHalf ? 2 : 4;
@@ -116,8 +117,12 @@ struct Attribute {
   AttributeValue value;
 };
 
+// Whether any of the values is beyond the largest half.
+bool exceed_halves(std::span<const float> values);
+
 // Writes a single-part EXR, ZIP compressed, data window = display window = extent, channels in the order
-// given. Errors also: no channel, a channel without a name or data, two channels of one name.
+// given. Floats beyond the largest half are stored as that in channels of halves. Errors also: no channel, a channel
+// without a name or data, two channels of one name.
 Status write_exr(const std::string& path, Extent extent, std::span<const Channel> channels,
                  std::span<const Attribute> attributes = {});
 

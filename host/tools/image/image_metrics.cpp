@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "tools/image/flip.h"
+#include "tools/image/image_io.h"
 
 namespace quincunx::tools {
 namespace {
 
-constexpr float kLargestHalf = 65504;
 constexpr int kSsimRadius = 5;
 constexpr double kSsimSigma = 1.5;
 

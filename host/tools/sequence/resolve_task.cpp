@@ -125,6 +125,7 @@ Result<std::optional<SequenceOutput>> output_for(const ResolveOptions& options, 
   output.settings = fmt::format("{}; output {}x{}; stored as {}", resolve_settings_text(task.resolve),
                                 task.format.output.width, task.format.output.height,
                                 options.stored == ChannelType::kHalf ? "half" : "float");
+  if (options.exposure > 0) output.settings += fmt::format("; exposure {}", options.exposure);
   return std::optional(std::move(output));
 }
 

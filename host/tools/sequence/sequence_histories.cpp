@@ -54,6 +54,7 @@ Status SequenceHistories::put(std::size_t key, KeptHistory history) {
     kept.history = std::move(history);
     held_ += bytes;
   } else {
+    kept.history.exposure = history.exposure;
     kept.file.reset(open_temporary_file());
     if (!kept.file) return refused(bytes);
     for (const std::vector<std::byte>* part : parts) {

@@ -117,6 +117,10 @@ Status SequenceOutput::write_linear(std::int64_t frame, std::span<const float> r
   return write_light(path(frame), extent, rgba, stored, {tone_map, exposure}, attributes);
 }
 
+bool SequenceOutput::clips(std::span<const float> rgba) const {
+  return format_of(pattern) == FileFormat::kExr && stored == ChannelType::kHalf && exceed_halves(rgba);
+}
+
 Status SequenceOutput::write_presented(std::int64_t frame, std::span<const std::uint8_t> rgba,
                                        std::span<const Attribute> kept) const {
   return write_picture(path(frame), extent, rgba.data(), 0, Alpha::kOpaque, kept);

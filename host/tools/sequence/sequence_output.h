@@ -44,6 +44,9 @@ struct SequenceOutput {
   Status write_linear(std::int64_t frame, std::span<const float> rgba, float exposure,
                       std::span<const Attribute> kept) const;
 
+  // Whether a file cannot hold all of this light: it is above what the halves of an EXR hold.
+  bool clips(std::span<const float> rgba) const;
+
   // RGBA8, sRGB encoded.
   Status write_presented(std::int64_t frame, std::span<const std::uint8_t> rgba,
                          std::span<const Attribute> kept) const;

@@ -252,6 +252,15 @@ Status SequenceResolver::hand_over(const SequenceFrame& frame, Picture picture) 
         });
     if (!status.ok()) return status;
   } else if (job_.output) {
+    if (!has_clipped_ && job_.output->clips(*picture.linear)) {
+      has_clipped_ = true;
+      outcome_.warnings.push_back(
+          fmt::format("frame {}, and perhaps later ones, has light above 65504, the largest half, which is "
+                      "written in its "
+                      "place; --store float keeps it",
+                      number));
+      spdlog::warn("{}", outcome_.warnings.back());
+    }
     const Status status =
         writers_.push([this, number, exposure = exposure_of(frame, forward_.service.plan(), job_.exposure),
                        linear = picture.linear, kept = frame.kept] {
@@ -314,6 +323,7 @@ Status SequenceResolver::add_albedo(Stream& stream, FrameInputs inputs, std::siz
                                     bool keeps) {
   if (!stream.albedo) return {};
   inputs.colour = stream.ring[static_cast<std::size_t>((stream.count - 1) % 2)][InputPlane::kAlbedo].view();
+  inputs.exposure = 1;  // albedo is no light
   auto history = merges ? histories_.take(~index) : KeptHistory();
   if (!history.ok()) return history.status();
   const FrameReport report = TwoWay::add(*stream.albedo, inputs, merges, keeps ? &history.value() : nullptr);

@@ -145,6 +145,7 @@ class SequenceResolver {
   SequenceWatch watch_;
   std::chrono::steady_clock::time_point last_delivery_;
   SequenceOutcome outcome_;
+  bool has_clipped_ = false;  // light, in a file
   WorkQueue writers_;
   std::unique_ptr<ReadAhead<SequenceFrame>> ahead_;
 };

@@ -5,7 +5,8 @@
 #include "bits.h"
 #include "checkerboard/pasts.h"
 
-#define LEAST_DIFFERENCE 1e-12f    // squared: two pairs that are equal count alike
+#define LEAST_DIFFERENCE 1e-30f  // squared: two pairs that are equal count alike
+#define MOST_DIFFERENCE 1e18f    // its square is finite
 
 static inline int16 non_finite_channels(float16 value) {
   return (as_int16(value) & 0x7fffffff) >= NON_FINITE_BITS;
@@ -75,7 +76,7 @@ static inline float16 over_channels(float16 value) {
 
 // Squared.
 static inline float16 difference_of(float16 a, float16 b) {
-  const float16 apart = clamp(a - b, -FINITE_HALF_MAX, FINITE_HALF_MAX);
+  const float16 apart = clamp(a - b, -MOST_DIFFERENCE, MOST_DIFFERENCE);
   return over_channels(apart * apart);
 }
 

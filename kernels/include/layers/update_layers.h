@@ -71,7 +71,7 @@ static inline LayerPlaces places_from(int x, int y, float phase_x, float phase_y
 
 // This frame's samples around a pixel.
 typedef struct SeedSamples {
-  SourceFrame frame;
+  ExposedFrame frame;
   TexelLayout depth;
   int x, y;              // the one nearest to its picture
   float from_x, from_y;  // from there to its picture, in samples
@@ -93,7 +93,7 @@ static inline Seed seed_of_layer(const SeedSamples* in, COLOUR_TEXELS colour, DE
   for (int i = 0; i < 9; ++i) {
     const int column = i % 3 - 1, row = i / 3 - 1;
     const int x = clamp(in->x + column, 0, in->frame.width - 1), y = clamp(in->y + row, 0, in->frame.height - 1);
-    float4 sample = load_colour(colour, in->frame.colour, x, y);
+    float4 sample = sample_at(colour, &in->frame, x, y);
     const float own = load_depth(depth, in->depth, x, y);
     const bool is_near = own > between, is_far = own < between;
     if (!is_valid(sample) || !(is_far || (is_near && kind == kNearLayer))) continue;
@@ -119,7 +119,8 @@ static inline Seed seed_of_layer(const SeedSamples* in, COLOUR_TEXELS colour, DE
 // ones. Coverage apart, a layer's alpha is even.
 static inline LaneFloat follow_layer_alphas(LayerKind kind, LaneMask lanes, const LayeredPixels* pixels,
                                             COLOUR_TEXELS colour, DEPTH_TEXELS depth, TexelLayout layout,
-                                            const SourceFrame* frame, const NearestSamples* nearest, LaneFloat alphas) {
+                                            const ExposedFrame* frame, const NearestSamples* nearest,
+                                            LaneFloat alphas) {
   LaneFloat between = pixels->between;
   LaneInt x = nearest->x;
   for (int i = 0; i < kLanes; ++i) {
@@ -128,7 +129,7 @@ static inline LaneFloat follow_layer_alphas(LayerKind kind, LaneMask lanes, cons
       for (int j = 0; j < 9; ++j) {
         const int column = clamp(FIRST_LANE(x) + j % 3 - 1, 0, frame->width - 1);
         const int row = clamp(nearest->y + j / 3 - 1, 0, frame->height - 1);
-        const float4 sample = load_colour(colour, frame->colour, column, row);
+        const float4 sample = sample_at(colour, frame, column, row);
         const float own = load_depth(depth, layout, column, row);
         const bool is_own = kind == kNearLayer ? own > FIRST_LANE(between) : own < FIRST_LANE(between);
         if (is_own && is_valid(sample)) add_to_range(&range, sample.w);
@@ -146,7 +147,7 @@ static inline LaneFloat follow_layer_alphas(LayerKind kind, LaneMask lanes, cons
 // Reseeds the layers of `lanes` with samples of theirs. A far layer stays what it is where there is none. Returns their
 // inertia: how much each resists this frame's sample, as a weight.
 static inline LaneFloat reseed_layer(LayerKind kind, LaneMask lanes, const LayeredPixels* pixels, COLOUR_TEXELS colour,
-                                     DEPTH_TEXELS depth, TexelLayout layout, const SourceFrame* frame,
+                                     DEPTH_TEXELS depth, TexelLayout layout, const ExposedFrame* frame,
                                      const NearestSamples* nearest, LaneTexels* history, LaneFloat* alpha,
                                      LaneFloat* known) {
   LaneFloat inertia = (LaneFloat)(0.0f), between = pixels->between, from_x = nearest->from_x;
@@ -234,7 +235,7 @@ static inline FetchedHistory known_far(const LayeredPixels* pixels, const Fetche
 
 // Rectifies and reseeds, as correct_history. In a pixel with two layers, only reseeds the far one, with samples of it.
 static inline LaneFloat correct_far(const LayeredPixels* pixels, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
-                                    TexelLayout layout, const SourceFrame* frame, const SampleMotion* sample_motion,
+                                    TexelLayout layout, const ExposedFrame* frame, const SampleMotion* sample_motion,
                                     const NearestSamples* nearest, LaneTexels* history, LaneFloat* alpha,
                                     Evidence* evidence) {
   const LaneFloat inertia =
@@ -289,24 +290,23 @@ static inline LaneFloat near_samples(LaneTexels* samples, LaneFloat* alpha, Lane
 
 // Reseeds near layers, and adds this frame's samples. `nearest`: those nearest to their pictures.
 static inline KnownLayers update_near(KnownLayers near, const LayeredPixels* pixels, COLOUR_TEXELS colour,
-                                      DEPTH_TEXELS depth, TexelLayout layout, const TemporalParams* params,
-                                      const NearestSamples* nearest) {
-  const SourceFrame frame = params->frame0;
+                                      const ExposedFrame* frame, DEPTH_TEXELS depth, TexelLayout layout,
+                                      const TemporalParams* params, const NearestSamples* nearest) {
 #if ALPHA
   const LaneFloat coverage = confidences(near.texels);
   const LaneMask covers = pixels->is_split & (coverage > SHOWN_COVERAGE_MIN);
   const LaneFloat followed =
-      coverage * follow_layer_alphas(kNearLayer, covers, pixels, colour, depth, layout, &frame, nearest,
+      coverage * follow_layer_alphas(kNearLayer, covers, pixels, colour, depth, layout, frame, nearest,
                                      near.alpha / select((LaneFloat)(1.0f), coverage, covers));
   near.alpha = select(near.alpha, followed, covers);
 #endif
   LaneFloat inertia = (LaneFloat)(0.0f);
   const LaneMask unknown = pixels->is_split & (near.confidence < CONFIDENCE_MIN);
   if (any_lane(unknown))
-    inertia = reseed_layer(kNearLayer, unknown, pixels, colour, depth, layout, &frame, nearest, &near.texels,
+    inertia = reseed_layer(kNearLayer, unknown, pixels, colour, depth, layout, frame, nearest, &near.texels,
                            &near.alpha, &near.confidence);
 
-  LaneTexels samples = load_samples(colour, frame.colour, nearest->x, nearest->y);
+  LaneTexels samples = load_samples(colour, frame, nearest->x, nearest->y);
   const LaneFloat own = load_depth_lanes(depth, layout, nearest->x, nearest->y);
   const float reach = max(NEAR_REACH * max(params->spacing_x, params->spacing_y), WIDE_REACH);
   LaneFloat alpha;

@@ -21,13 +21,9 @@ static inline LaneFloat distance_weights(const TemporalParams* params, const Nea
   return near * near;
 }
 
-// Returns false only if none is brighter than 2 or invalid, so that their luma weights are all 1.
-static inline bool may_be_bright(LaneTexels samples) {
-  return any_at_least_two(any_bits(samples));
-}
-
-// Returns the luma weight of a sample. An invalid one has none and becomes black.
+// Returns the luma weight of a sample, and holds it. An invalid one has none and becomes black.
 static inline float luma_weight_or_none(float4* sample) {
+  *sample = held_sample(*sample);
   if (is_valid(*sample)) return luma_weight(*sample);
   *sample = (float4)(0.0f);
   return 0.0f;

@@ -4,6 +4,7 @@
 //
 // Sources: S found by search on the development scenes, L in the laboratory of docs/lab/temporal.md, F fitted by least
 // squares against truth, N guards a division or a range of numbers.
+// Light, luma and tone are of exposed light (exposure.cl).
 // A limit ends in _MIN if something holds from it on, in _MAX if up to it.
 #pragma once
 

@@ -1,15 +1,51 @@
 // SPDX-License-Identifier: MIT
-// The samples of this frame, one at a time or one for each lane. A sample that is not finite, or as large as
-// a half can be, is invalid and takes no part.
+// The samples of this frame in exposed light, one at a time or one for each lane. A sample with NaN in it, or light of
+// -65504 or less, is invalid and takes no part. What is brighter than history can hold, infinity too, counts as the
+// brightest that it can.
 #pragma once
 
 #include "arithmetic.h"
+#include "picture_params.h"
 #include "temporal/constants.h"
 #include "temporal/history.h"
 #include "temporal/temporal_params.h"
 #include "texel.h"
 
-#define INVALID_BITS 0x477fe000  // bits of 65504, the largest half: what a half target holds of anything brighter
+#define INVALID_BITS 0x477fe000   // bits of 65504, the largest half
+#define INFINITY_BITS 0x7f800000
+
+// A frame whose colour is read as exposed light.
+typedef struct ExposedFrame {
+  int width, height;
+  TexelLayout colour;
+  float exposure;  // Exposure's factor
+} ExposedFrame;
+
+static inline ExposedFrame expose(SourceFrame frame, __global const Exposure* exposure) {
+  const ExposedFrame exposed = {frame.width, frame.height, frame.colour, exposure->factor};
+  return exposed;
+}
+
+// Returns samples with each channel that is too bright as the largest float below 65504, which halves round to that.
+#define DEFINE_HELD(name, floats, ints, as_floats, as_ints)                          \
+  static inline floats name(floats samples) {                                        \
+    const ints bits = as_ints(samples);                                              \
+    const ints too_bright = (bits >= INVALID_BITS) & (bits <= INFINITY_BITS);        \
+    return as_floats(select(bits, (ints)(INVALID_BITS - 1), too_bright));            \
+  }
+DEFINE_HELD(held_sample, float4, int4, as_float4, as_int4)
+#if LANES == 8
+DEFINE_HELD(held_four, float16, int16, as_float16, as_int16)
+#endif
+
+static inline LaneTexels held_samples(LaneTexels samples) {
+#if LANES == 8
+  const LaneTexels held = {held_four(samples.left), held_four(samples.right)};
+  return held;
+#else
+  return held_sample(samples);
+#endif
+}
 
 static inline bool is_valid(float4 sample) {
   const long2 hits = as_long2((as_int4(sample) & 0x7fffffff) >= INVALID_BITS);
@@ -21,8 +57,10 @@ static inline float largest_colour(float4 colour) {
 }
 
 // Returns sample (x, y), clamped to the viewport's edge.
-static inline float4 sample_at(COLOUR_TEXELS texels, const SourceFrame* frame, int x, int y) {
-  return load_colour(texels, frame->colour, clamp(x, 0, frame->width - 1), clamp(y, 0, frame->height - 1));
+static inline float4 sample_at(COLOUR_TEXELS texels, const ExposedFrame* frame, int x, int y) {
+  const float4 sample =
+      load_colour(texels, frame->colour, clamp(x, 0, frame->width - 1), clamp(y, 0, frame->height - 1));
+  return held_sample((float4)(sample.xyz * frame->exposure, sample.w));
 }
 
 static inline void load_next_sample(COLOUR_TEXELS texels, TexelLayout layout, LaneInt* x, int y, LaneTexels* samples) {
@@ -30,15 +68,31 @@ static inline void load_next_sample(COLOUR_TEXELS texels, TexelLayout layout, La
   *x = NEXT_LANES(*x);
 }
 
-// Loads the samples of a row nearest to the pixels.
-static inline LaneTexels load_samples(COLOUR_TEXELS texels, TexelLayout layout, LaneInt x, int y) {
-#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF && LANES == 8
-  return gather_half_texels((__global const ulong*)texels + row_index(layout, y), x);
+// Alpha stays.
+static inline LaneTexels exposed(LaneTexels texels, float exposure) {
+#if LANES == 8
+  const float16 factors = select((float16)(exposure), (float16)(1.0f), LAST_CHANNELS);
+  const LaneTexels products = {texels.left * factors, texels.right * factors};
+  return products;
 #else
-  LaneTexels samples = no_texels();
-  EACH_LANE(load_next_sample(texels, layout, &x, y, &samples));
-  return samples;
+  return (float4)(texels.xyz * exposure, texels.w);
 #endif
+}
+
+// Loads the samples of a row nearest to the pixels, of any brightness.
+static inline LaneTexels load_samples(COLOUR_TEXELS texels, const ExposedFrame* frame, LaneInt x, int y) {
+  LaneTexels samples = no_texels();
+#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF && LANES == 8
+  samples = gather_half_texels((__global const ulong*)texels + row_index(frame->colour, y), x);
+#else
+  EACH_LANE(load_next_sample(texels, frame->colour, &x, y, &samples));
+#endif
+  return exposed(samples, frame->exposure);
+}
+
+// Returns false only if none is brighter than 2 or invalid, so that their luma weights are all 1.
+static inline bool may_be_bright(LaneTexels samples) {
+  return any_at_least_two(any_bits(samples));
 }
 
 // Returns the luma weight of a valid sample: 1 up to a brightest channel of 2 and less beyond, so that one bright
@@ -73,7 +127,8 @@ static inline LaneMask are_valid(LaneTexels samples) {
              max(magnitude_bits(blues(samples)), magnitude_bits(last_channels(samples)))) < INVALID_BITS;
 }
 
-static inline SampleLanes compare_lanes(LaneTexels samples) {
+static inline SampleLanes compare_lanes(LaneTexels any_samples) {
+  const LaneTexels samples = held_samples(any_samples);
   const LaneFloat red = reds(samples), green = greens(samples), blue = blues(samples);
   const SampleLanes lanes = {luma_of(samples), max(max(red, green), blue), min(min(red, green), blue),
                              are_valid(samples)};

@@ -28,6 +28,7 @@ typedef struct Past {
   HistoryLayer history;
   __global const TileReprojection* previous_tiles;
   __global const LayerSplit* splits;  // one for each sample of a split tile, else null
+  float change;                       // Exposure's
 } Past;
 
 // ---- Where samples are in history.
@@ -177,12 +178,12 @@ static inline Neighbours neighbours_of(const SampleLanes* above, const SampleLan
 }
 
 // Loads the samples of row y from column x on; `columns` are the same, and both are clamped to the viewport.
-static inline SampleLanes load_row(COLOUR_TEXELS colour, const SourceFrame* frame, int x, LaneInt columns, int y) {
+static inline SampleLanes load_row(COLOUR_TEXELS colour, const ExposedFrame* frame, int x, LaneInt columns, int y) {
   const int row = clamp(y, 0, frame->height - 1);
-  if (x < 0 || x + kLanes > frame->width) return compare_lanes(load_samples(colour, frame->colour, columns, row));
+  if (x < 0 || x + kLanes > frame->width) return compare_lanes(load_samples(colour, frame, columns, row));
   COLOUR_ROW from = colour_row(colour, frame->colour, row);
   const LaneTexels texels = {load_colour4(colour, from, x), load_colour4(colour, from, x + 4)};
-  return compare_lanes(texels);
+  return compare_lanes(exposed(texels, frame->exposure));
 }
 
 // Adds what the samples of a row say.
@@ -258,10 +259,10 @@ static inline void add_rows(TileEvidence* tile, const RowsEvidence* rows, LaneMa
 }
 
 // Adds what the tile's samples in at most kJudgedAtOnce columns from `first` on say.
-static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
-                                 TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
-                                 TileReprojection tile, SampleRange samples, int first) {
-  const SourceFrame* frame = &params->frame;
+static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, const ExposedFrame* frame,
+                                 DEPTH_TEXELS depth, TexelLayout depth_layout, const Past* past,
+                                 const TemporalTileParams* params, TileReprojection tile, SampleRange samples,
+                                 int first) {
   const int x = first - 1;  // the left neighbour
   const LaneInt columns = clamp(x + LANE_NUMBERS, (LaneInt)(0), (LaneInt)(frame->width - 1));
   const LaneMask middle = (LANE_NUMBERS >= 1) & (LANE_NUMBERS <= min(samples.last.x - x, (int)kJudgedAtOnce));
@@ -280,7 +281,7 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
     if (any_lane(judged)) {
       will_read_history(past->history, index.s1 + kHistoryAhead);
       const Neighbours near = neighbours_of(&above, &own, &below, params->parity >= 0);
-      add_row(&rows, gather_history(past->history, index), &own, &near, judged,
+      add_row(&rows, exposed(gather_history(past->history, index), past->change), &own, &near, judged,
               (int)place_y % kTemporalTile < kTemporalCell);
     }
     above = own;
@@ -290,17 +291,16 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
 }
 #else
 // Adds what the tile's samples in column x say.
-static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
-                                 TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
-                                 TileReprojection tile, SampleRange samples, int x) {
-  const SourceFrame* frame = &params->frame;
+static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, const ExposedFrame* frame,
+                                 DEPTH_TEXELS depth, TexelLayout depth_layout, const Past* past,
+                                 const TemporalTileParams* params, TileReprojection tile, SampleRange samples, int x) {
   const int aside = params->parity >= 0 ? 1 : 0;  // the shaded neighbours on a checkerboard are the diagonal ones
   const float place_x = (float)x * params->spacing_x + params->start_x;
   for (int y = samples.first.y; y <= samples.last.y; ++y) {
     const float place_y = (float)y * params->spacing_y + params->start_y;
     int index;
     if (!find_judged(past, depth, depth_layout, params, tile, x, y, place_x, place_y, &index)) continue;
-    const float4 before = load_history(past->history, index);
+    const float4 before = exposed(load_history(past->history, index), past->change);
     const float4 own = sample_at(colour, frame, x, y);
     if (fabs(before.w) < JUDGED_CONFIDENCE_MIN || !is_valid(own)) continue;
     const SampleLanes of_own = compare_lanes(own);
@@ -333,11 +333,11 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
 #endif
 
 // Returns what a tile's samples say of history.
-static inline TileEvidence judge_history(COLOUR_TEXELS colour, DEPTH_TEXELS depth, TexelLayout depth_layout,
-                                         const Past* past, const TemporalTileParams* params, TileReprojection tile,
-                                         SampleRange samples) {
+static inline TileEvidence judge_history(COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
+                                         TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
+                                         TileReprojection tile, SampleRange samples) {
   TileEvidence evidence = no_evidence();
   for (int first = samples.first.x; first <= samples.last.x; first += kJudgedAtOnce)
-    judge_columns(&evidence, colour, depth, depth_layout, past, params, tile, samples, first);
+    judge_columns(&evidence, colour, frame, depth, depth_layout, past, params, tile, samples, first);
   return evidence;
 }

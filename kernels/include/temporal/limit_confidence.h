@@ -98,16 +98,17 @@ static inline float2 gains_of_row(__global const TileLight* light, const Tempora
   return 0.5f * (float2)(row[max(tile_x - 1, 0)].gain + own, own + row[min(tile_x + 1, params->tiles_x - 1)].gain);
 }
 
-// Returns the light of the pixels from (x, y) on.
-static inline RowLight light_of_row(__global const TileLight* light, const TemporalParams* params, int x, int y) {
+// Returns the light of the pixels from (x, y) on, where the exposure has changed by a factor.
+static inline RowLight light_of_row(__global const TileLight* light, const TemporalParams* params, float change, int x,
+                                    int y) {
   const int tile_x = x / kTemporalTile;
   const RowBlend cells = between_rows(y, kTemporalCell, 2 * params->tiles_y - 1);
   const RowBlend tiles = between_rows(y, kTemporalTile, params->tiles_y - 1);
   const float4 upper = rejections_of_row(light, params, tile_x, cells.above);
   const float2 gains = gains_of_row(light, params, tile_x, tiles.above);
   const float2 gain = gains + (gains_of_row(light, params, tile_x, tiles.below) - gains) * tiles.down;
-  const RowLight row = {upper + (rejections_of_row(light, params, tile_x, cells.below) - upper) * cells.down, gain.x,
-                        gain.y, x % kTemporalTile};
+  const RowLight row = {upper + (rejections_of_row(light, params, tile_x, cells.below) - upper) * cells.down,
+                        gain.x * change, gain.y * change, x % kTemporalTile};
   return row;
 }
 

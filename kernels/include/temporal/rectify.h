@@ -56,8 +56,7 @@ typedef struct ToneBoxes {
   LaneMask known;
 } ToneBoxes;
 
-static inline ToneBoxes boxes_around(COLOUR_TEXELS texels, const SourceFrame* frame, LaneInt x, int y) {
-  const TexelLayout layout = frame->colour;
+static inline ToneBoxes boxes_around(COLOUR_TEXELS texels, const ExposedFrame* frame, LaneInt x, int y) {
   const int last_x = frame->width - 1, last_y = frame->height - 1;
   const LaneFloat none = (LaneFloat)(0.0f), one = (LaneFloat)(1.0f);
   const CrossChannel empty = {none, none, none};
@@ -67,7 +66,7 @@ static inline ToneBoxes boxes_around(COLOUR_TEXELS texels, const SourceFrame* fr
   for (int i = 0; i < 5; ++i) {
     const int column = (i == 1) - (i == 2), row = (i == 3) - (i == 4);
     const LaneInt columns = clamp(x + column, (LaneInt)(0), (LaneInt)(last_x));
-    const LaneTexels samples = load_samples(texels, layout, columns, clamp(y + row, 0, last_y));
+    const LaneTexels samples = held_samples(load_samples(texels, frame, columns, clamp(y + row, 0, last_y)));
     const LaneMask valid = are_valid(samples), is_first = valid & (count == none);
     const Tone tone = to_tone(samples);
     add_channel(&red, tone.red, valid, is_first);
@@ -111,7 +110,7 @@ static inline Rectified rectify_texels(LaneTexels history, LaneFloat rejection, 
 }
 
 // Moves alpha by `rejection` of the way into the range of the valid ones of sample (x, y) and its four neighbours.
-static inline float rectify_alpha(COLOUR_TEXELS texels, const SourceFrame* frame, int x, int y, float alpha,
+static inline float rectify_alpha(COLOUR_TEXELS texels, const ExposedFrame* frame, int x, int y, float alpha,
                                   float rejection) {
   float first = 0.0f, sum = 0.0f, squares = 0.0f, count = 0.0f;
   for (int i = 0; i < 5; ++i) {
@@ -132,7 +131,7 @@ static inline float rectify_alpha(COLOUR_TEXELS texels, const SourceFrame* frame
 }
 
 // Rectifies the alphas of the pixels.
-static inline LaneFloat rectify_alphas(COLOUR_TEXELS texels, const SourceFrame* frame, LaneInt x, int y,
+static inline LaneFloat rectify_alphas(COLOUR_TEXELS texels, const ExposedFrame* frame, LaneInt x, int y,
                                        LaneFloat alphas, LaneFloat rejection) {
   for (int i = 0; i < kLanes; ++i) {
     const float own = FIRST_LANE(rejection);
@@ -186,7 +185,7 @@ static inline float uneven_alpha(HistoryLayer layer, AlphaPlane plane, int x, in
 
 // Moves the alphas of pixels of one layer, in `lanes`, into the range of those of the 3x3 samples around the nearest
 // ones. `from`: the texels nearest to the places of their history.
-static inline LaneFloat follow_alphas(COLOUR_TEXELS texels, const SourceFrame* frame, HistoryLayer layer,
+static inline LaneFloat follow_alphas(COLOUR_TEXELS texels, const ExposedFrame* frame, HistoryLayer layer,
                                       AlphaPlane plane, LaneInt from_x, LaneInt from_y, LaneInt x, int y,
                                       LaneFloat alphas, LaneMask lanes) {
   for (int i = 0; i < kLanes; ++i) {

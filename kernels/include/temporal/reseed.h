@@ -49,7 +49,7 @@ static inline LaneFloat similarity(const SampleMotion* motion, Motions own, Moti
 // Returns a substitute for a seed where none of the 3x3 samples is valid: the mean of the valid ones in eight
 // directions, 2, 4, 8 and 16 samples away, weighted by 1 / distance. The substitute for infinity would not do: where
 // history is resampled it would stay for several frames in the pixels around.
-static inline float4 seed_from_afar(COLOUR_TEXELS texels, const SourceFrame* frame, int x, int y) {
+static inline float4 seed_from_afar(COLOUR_TEXELS texels, const ExposedFrame* frame, int x, int y) {
   float4 sum = (float4)(0.0f);
   float weights = 0.0f;
   for (int distance = 2; distance <= SEED_DISTANCE_MAX; distance *= 2) {
@@ -78,7 +78,7 @@ static inline void add_to_seeds(LaneTexels* sum, LaneFloat* weights, LaneTexels 
 }
 
 // Replaces the means of the pixels without a valid sample near. The slow path.
-static inline LaneTexels seeds_from_afar(COLOUR_TEXELS texels, const SourceFrame* frame, LaneTexels means,
+static inline LaneTexels seeds_from_afar(COLOUR_TEXELS texels, const ExposedFrame* frame, LaneTexels means,
                                          LaneMask known, LaneInt x, int y) {
   for (int i = 0; i < kLanes; ++i) {
     const bool is_known = FIRST_LANE(known);
@@ -91,7 +91,7 @@ static inline LaneTexels seeds_from_afar(COLOUR_TEXELS texels, const SourceFrame
 
 // The means of the 3x3 samples around the nearest ones, each weighted by a Gaussian of its distance, its luma weight
 // and its similarity to the nearest.
-static inline Seeds seeds_of(COLOUR_TEXELS texels, const SourceFrame* frame, const SampleMotion* motion,
+static inline Seeds seeds_of(COLOUR_TEXELS texels, const ExposedFrame* frame, const SampleMotion* motion,
                              const NearestSamples* nearest) {
   const Motions own = motions_of(motion, nearest->x, nearest->y);
   LaneTexels sum = no_texels();
@@ -106,7 +106,7 @@ static inline Seeds seeds_of(COLOUR_TEXELS texels, const SourceFrame* frame, con
       const LaneFloat away_x = (float)column - nearest->from_x;
       const LaneFloat near = bell((away_x * away_x + away_y * away_y) * SEED_FALLOFF);
       const LaneFloat alike = similarity(motion, own, motions_of(motion, x, y));
-      add_to_seeds(&sum, &weights, load_samples(texels, frame->colour, x, y), near * alike);
+      add_to_seeds(&sum, &weights, load_samples(texels, frame, x, y), near * alike);
     }
   }
   const LaneMask known = weights > 0.0f;
@@ -124,7 +124,7 @@ static inline bool needs_correction(const Evidence* evidence) {
 }
 
 // Brings history into the range of the samples around it by its rejection, where it has any.
-static inline void rectify_history(COLOUR_TEXELS colour, const SourceFrame* frame, const NearestSamples* nearest,
+static inline void rectify_history(COLOUR_TEXELS colour, const ExposedFrame* frame, const NearestSamples* nearest,
                                    LaneTexels* history, LaneFloat* alpha, Evidence* evidence) {
   const ToneBoxes boxes = boxes_around(colour, frame, nearest->x, nearest->y);
   const Rectified rectified = rectify_texels(*history, evidence->rejection, &boxes);
@@ -136,7 +136,7 @@ static inline void rectify_history(COLOUR_TEXELS colour, const SourceFrame* fram
 }
 
 // Reseeds the history of `lanes`. Returns its inertia.
-static inline LaneFloat reseed_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
+static inline LaneFloat reseed_history(COLOUR_TEXELS colour, const ExposedFrame* frame, const SampleMotion* motion,
                                        const NearestSamples* nearest, LaneMask lanes, LaneTexels* history,
                                        LaneFloat* alpha, LaneFloat* confidence) {
   const Seeds seeds = seeds_of(colour, frame, motion, nearest);
@@ -152,7 +152,7 @@ static inline LaneFloat reseed_history(COLOUR_TEXELS colour, const SourceFrame* 
 
 // Rectifies history where it is rejected, and reseeds that of `lanes` where its confidence is less than the least; with
 // ALPHA its alpha, too. Returns its inertia: how much it resists this frame's sample, as a weight.
-static inline LaneFloat correct_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
+static inline LaneFloat correct_history(COLOUR_TEXELS colour, const ExposedFrame* frame, const SampleMotion* motion,
                                         const NearestSamples* nearest, LaneMask lanes, LaneTexels* history,
                                         LaneFloat* alpha, Evidence* evidence) {
   if (any_lane(evidence->rejection > 0.0f)) rectify_history(colour, frame, nearest, history, alpha, evidence);

@@ -57,7 +57,7 @@ typedef struct MergeParams {
   int height;
   TexelLayout centred;
   int columns_per_item;  // pixels that a work-item makes
-  int has_other;         // 0: there is no other history
+  float other_exposure;  // the factor of the other history's light; 0: there is none
 } MergeParams;
 QUINCUNX_CHECK_SIZE(MergeParams, 8 + 8 + 8);
 

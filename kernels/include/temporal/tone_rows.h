@@ -6,6 +6,7 @@
 #pragma once
 
 #include "bits.h"
+#include "picture_params.h"
 #include "temporal/constants.h"
 #include "temporal/history.h"
 #include "temporal/temporal_params.h"
@@ -61,21 +62,21 @@ static inline float16 cleaned(float16 values) {
   return min(max(known, -FINITE_HALF_MAX), FINITE_HALF_MAX);
 }
 
-// Sixteen texels as they were drawn, cleaned.
+// Sixteen texels in exposed light, cleaned.
 typedef struct LightRow {
   float16 red, green, blue;
 } LightRow;
 
 // Those around the pixels from (x, y) on; the row clamped to the edge, too.
-static inline LightRow light_row(RESOLVED_TEXELS source, const RefineParams* params, int x, int y) {
+static inline LightRow light_row(RESOLVED_TEXELS source, const RefineParams* params, float exposure, int x, int y) {
   const int row = clamp(y, 0, params->height - 1);
   const float16 t0 = load_clamped_texels4(source, params, x - kRowMargin, row);
   const float16 t1 = load_clamped_texels4(source, params, x, row);
   const float16 t2 = load_clamped_texels4(source, params, x + 4, row);
   const float16 t3 = load_clamped_texels4(source, params, x + 8, row);
-  const LightRow light = {cleaned((float16)(t0.s048c, t1.s048c, t2.s048c, t3.s048c)),
-                          cleaned((float16)(t0.s159d, t1.s159d, t2.s159d, t3.s159d)),
-                          cleaned((float16)(t0.s26ae, t1.s26ae, t2.s26ae, t3.s26ae))};
+  const LightRow light = {cleaned((float16)(t0.s048c, t1.s048c, t2.s048c, t3.s048c) * exposure),
+                          cleaned((float16)(t0.s159d, t1.s159d, t2.s159d, t3.s159d) * exposure),
+                          cleaned((float16)(t0.s26ae, t1.s26ae, t2.s26ae, t3.s26ae) * exposure)};
   return light;
 }
 
@@ -110,16 +111,16 @@ static inline void store_light8(OUTPUT_TEXELS output, RESOLVED_TEXELS source, co
 }
 
 // Stores the pixels from (x, y) on, whose light was `light` and tone `before`, that of light over `factors`. Those of
-// which no channel has moved keep their light.
+// which no channel has moved keep their light. `inverse`: Exposure's.
 static inline void store_tone8(OUTPUT_TEXELS output, RESOLVED_TEXELS source, const RefineParams* params,
                                int x, int y, LightRow light, LightRow factors, ToneRow before, float8 red,
-                               float8 green, float8 blue) {
+                               float8 green, float8 blue, float inverse) {
   const int8 stays =
       (red == at_pixels(before.red)) & (green == at_pixels(before.green)) & (blue == at_pixels(before.blue));
   const float8 brightest = max(max(max(red, green), blue), 0.0f);
   const float8 scale = 1.0f / max(1.0f - brightest, TONE_REST_MIN);
   store_light8(output, source, params, x, y, min(params->width - x, (int)kRefineBlock),
-               light_of(red, scale * at_pixels(factors.red), at_pixels(light.red), stays),
-               light_of(green, scale * at_pixels(factors.green), at_pixels(light.green), stays),
-               light_of(blue, scale * at_pixels(factors.blue), at_pixels(light.blue), stays));
+               light_of(red, scale * at_pixels(factors.red), at_pixels(light.red), stays) * inverse,
+               light_of(green, scale * at_pixels(factors.green), at_pixels(light.green), stays) * inverse,
+               light_of(blue, scale * at_pixels(factors.blue), at_pixels(light.blue), stays) * inverse);
 }

@@ -106,7 +106,7 @@ typedef struct quincunx_inputs {
   /* Column-major: this frame's (ndc.x, ndc.y, depth, 1) to the previous frame's clip coordinates, both without jitter;
    * all as settings.clip_space says. All 0: a camera that stands still. */
   float clip_to_previous_clip[16];
-  float exposure;       /* multiplies linear colour of the presented picture; 0: 1 */
+  float exposure;       /* makes the light that is shown, before its curve; 0: 1, and methods measure it */
   int32_t reset;        /* not 0: a cut; nothing of the previous frames may be used */
   int32_t parity;       /* of a checkerboard: pixels with (x + y) % 2 == parity are shaded; 0 or 1 */
   int32_t padding;      /* 0 */
