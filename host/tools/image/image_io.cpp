@@ -160,6 +160,13 @@ Status write_light(const std::string& path, Extent extent, std::span<const float
   if (!format) return Status::invalid(fmt::format("'{}' must end in {}", path, endings()));
   const std::size_t width = static_cast<std::size_t>(extent.width), texel = 4 * sizeof(float);
   if (*format == FileFormat::kExr) {
+    std::vector<float> held;
+    if (stored == ChannelType::kHalf && exceed_halves(rgba)) {
+      held.assign(rgba.begin(), rgba.end());
+      for (float& value : held)
+        if (std::abs(value) > kLargestHalf) value = std::copysign(kLargestHalf, value);
+      rgba = held;
+    }
     std::vector<Channel> channels;
     for (std::size_t i = 0; i < 4; ++i) {
       channels.push_back({.name = std::string(1, "RGBA"[i]),

@@ -121,8 +121,7 @@ struct Attribute {
 bool exceed_halves(std::span<const float> values);
 
 // Writes a single-part EXR, ZIP compressed, data window = display window = extent, channels in the order
-// given. Floats beyond the largest half are stored as that in channels of halves. Errors also: no channel, a channel
-// without a name or data, two channels of one name.
+// given. Errors also: no channel, a channel without a name or data, two channels of one name.
 Status write_exr(const std::string& path, Extent extent, std::span<const Channel> channels,
                  std::span<const Attribute> attributes = {});
 
@@ -132,7 +131,7 @@ struct Display {
   float exposure = 1;
 };
 
-// Writes linear RGBA: `stored` in an EXR, as holds_light() says in the others.
+// Writes linear RGBA: `stored` in an EXR, as halves within the largest one; as holds_light() says in the others.
 Status write_light(const std::string& path, Extent extent, std::span<const float> rgba,
                    ChannelType stored = ChannelType::kHalf, const Display& display = {},
                    std::span<const Attribute> attributes = {});

@@ -22,7 +22,6 @@
 #include <cstring>
 #include <exception>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 
 #include "tools/image/image_io.h"
@@ -324,7 +323,7 @@ bool write_rows(png_structp png, png_infop info, const Texels& codes) {
   return true;
 }
 
-// The channel's texels as a packed plane of the type that the file stores; halves within the largest one.
+// The channel's texels as a packed plane of the type that the file stores.
 template <typename From, typename To>
 std::vector<char> converted(const Channel& channel, Extent extent) {
   std::vector<char> plane(static_cast<std::size_t>(extent.area()) * sizeof(To));
@@ -335,8 +334,6 @@ std::vector<char> converted(const Channel& channel, Extent extent) {
     for (int x = 0; x < extent.width; ++x, from += channel.pixel_stride, to += sizeof(To)) {
       From value;
       std::memcpy(&value, from, sizeof value);
-      if constexpr (std::is_same_v<To, half>)
-        value = value > kLargestHalf ? kLargestHalf : value < -kLargestHalf ? -kLargestHalf : value;
       const To stored(value);
       std::memcpy(to, &stored, sizeof stored);
     }
