@@ -103,9 +103,8 @@ static inline float part_weight(int away, float along) {
   return 0.5f * (away < 0 ? (1.0f - along) * (1.0f - along) : along * along);
 }
 
-// Returns how far history lags behind around tile (x, y), in parts of its light. What only some tiles show is a change
-// of its own there: it counts little.
-static inline float lag_around(__global const LagTotal* lags, int tiles_x, int tiles_y, int x, int y) {
+// Returns LagTotal around tile (x, y).
+static inline float4 lags_around(__global const LagTotal* lags, int tiles_x, int tiles_y, int x, int y) {
   const int at_x = (2 * x + 1) * kLagColumns, at_y = (2 * y + 1) * kLagRows;
   const int column = at_x / (2 * tiles_x), row = at_y / (2 * tiles_y);
   const float along_x = (float)(at_x % (2 * tiles_x)) / (float)(2 * tiles_x);
@@ -117,14 +116,21 @@ static inline float lag_around(__global const LagTotal* lags, int tiles_x, int t
       across += part_weight(i - column, along_x) * convert_float4(vload4(j * kLagColumns + i, &lags->lag));
     sum += part_weight(j - row, along_y) * across;
   }
+  return sum;
+}
+
+// Returns how far history lags behind, in parts of its light. What only some tiles show is a change of its own there:
+// it counts little.
+static inline float lag_of(float4 sum) {
   if (!(sum.x * sum.z > 0.0f)) return 0.0f;
   const float mean = sum.x / max(sum.y, 1.0f), usual = sum.z / max(sum.w, 1.0f);
   return fabs(mean) > fabs(usual) ? usual * usual / mean : mean;
 }
 
-// Returns the broad gain by that lag, and learns the trend.
-static inline float follow_light(float lag, float* trend) {
-  const float surprise = lag - *trend;
+// Returns the broad gain by LagTotal around a tile, and learns the trend. Without evidence nothing changes.
+static inline float follow_light(float4 sum, float* trend) {
+  if (!(sum.y > 0.0f)) return 1.0f;
+  const float surprise = lag_of(sum) - *trend;
   const float change = *trend + clamp(fabs(surprise) / LAG_AT_ONCE, LAG_PART_MIN, 1.0f) * surprise;
   *trend += TREND_PART * clamp(surprise, -TREND_SURPRISE_MAX, TREND_SURPRISE_MAX);
   return fabs(change) > GAIN_CHANGE_MIN ? clamp(1.0f + change, 1.0f / GAIN_MAX, GAIN_MAX) : 1.0f;
@@ -284,7 +290,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
                      (changes ? (1.0f - PERSISTENCE_MEMORY) * change.direction : 0.0f);
   const bool is_local = changes && tile.persistence * change.direction > PERSISTENCE_MIN;
   tile.trend = previous[i].trend;
-  const float broad = follow_light(lag_around(total->lags, tiles_x, tiles_y, x, y), &tile.trend);
+  const float broad = follow_light(lags_around(total->lags, tiles_x, tiles_y, x, y), &tile.trend);
   tile.gain = is_local ? clamp(1.0f + change.relative, 1.0f / GAIN_MAX, GAIN_MAX) : broad;
   const float explained = (broad - 1.0f) * own.light / max(own.count, 1.0f);
   const bool is_widespread = (float)total->changed > WHOLE_CHANGED_TILES_MIN * (float)(tiles_x * tiles_y);

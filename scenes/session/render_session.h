@@ -125,6 +125,7 @@ class RenderSession {
   std::vector<std::uint64_t> bytes_in_, bytes_out_;
   std::vector<std::string> files_;
   double wall_seconds_ = 0;
+  bool has_clipped_ = false;  // light, in a file
 };
 
 }  // namespace quincunx::scenes

@@ -142,9 +142,8 @@ double part_weight(int part, double place) {
   return away <= .5 ? .75 - away * away : .5 * (1.5 - away) * (1.5 - away);
 }
 
-// How far history lags behind around a tile.
 template <typename Real>
-Real lag_around(const LightInputs& in, const TotalLightOf<Real>& total, int x, int y) {
+LagTotalOf<Real> lags_around(const LightInputs& in, const TotalLightOf<Real>& total, int x, int y) {
   LagTotalOf<Real> sum;
   for (int row = 0; row < kLagRows; ++row) {
     for (int column = 0; column < kLagColumns; ++column) {
@@ -158,15 +157,23 @@ Real lag_around(const LightInputs& in, const TotalLightOf<Real>& total, int x, i
       sum.usual_lit += weight * part.usual_lit;
     }
   }
+  return sum;
+}
+
+// How far history lags behind.
+template <typename Real>
+Real lag_of(const LagTotalOf<Real>& sum) {
   if (!(sum.lag * sum.usual_lag > 0)) return 0;
   const Real mean = sum.lag / max(sum.lit, 1), usual = sum.usual_lag / max(sum.usual_lit, 1);
   return abs(mean) > abs(usual) ? usual * usual / mean : mean;
 }
 
-// The broad gain; learns the trend.
+// The broad gain by what is around a tile; learns the trend. Without evidence nothing changes.
 template <typename Real>
-Real broad_gain(const Real& lag, const Real& trend, TileLightOf<Real>& light) {
-  const Real surprise = lag - trend;
+Real broad_gain(const LagTotalOf<Real>& sum, const Real& trend, TileLightOf<Real>& light) {
+  light.trend = trend;
+  if (!(sum.lit > 0)) return Real(1);
+  const Real surprise = lag_of(sum) - trend;
   const Real change = trend + surprise * clamp(abs(surprise) / kLagAtOnce, kLagPartMin, 1);
   light.trend = trend + kTrendPart * clamp(surprise, -kTrendSurpriseMax, kTrendSurpriseMax);
   return abs(change) > kGainChangeMin ? clamp(1 + change, 1 / kGainMax, kGainMax) : Real(1);
@@ -294,7 +301,7 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
   TileLightOf<Real> light;
   const bool is_widespread = total.changed > kWholeChangedTilesMin * in.tiles_x * in.tiles_y;
   const bool relit = is_relit(total, is_widespread);
-  const Real broad = broad_gain<Real>(lag_around(in, total, x, y), in.before[i].light.trend, light);
+  const Real broad = broad_gain<Real>(lags_around(in, total, x, y), in.before[i].light.trend, light);
   const Real local = local_gain(sums, before, light);
   light.gain = local == 1 ? broad : local;
   const Real explained = (broad - 1) * evidence.light / std::max(evidence.count, 1);
