@@ -546,7 +546,7 @@ TEST(SequenceHistories, NothingIsTakenTwice) {
 
 TEST(SequenceHistories, AFullDiskIsRefusedInASentence) {
   tools::SequenceHistories histories(100'000);
-  const KeptHistory kept = {std::vector<std::byte>(60'000, std::byte{3}), {}, {}, {std::byte{4}}};
+  const KeptHistory kept = {1, std::vector<std::byte>(60'000, std::byte{3}), {}, {}, {std::byte{4}}};
   ASSERT_TRUE(histories.put(1, kept).ok());  // in memory
   rlimit before = {};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
