@@ -91,8 +91,10 @@ class Reprojected : public ::testing::TestWithParam<Variant>, protected testing:
     const ImageView view = rig.output(settings_.output.linear, output);
     const Counter counter = rig.counter();
     FrameReport report;
-    chain.run(chain.frame(current.inputs, &previous.inputs, {.linear = view}, counter), {.linear = view},
-              report, nullptr);
+    FrameInputs inputs = current.inputs;
+    inputs.exposure = .8f;  // with which exposed light is light as it is
+    chain.run(chain.frame(inputs, &previous.inputs, {.linear = view}, counter), {.linear = view}, report,
+              nullptr);
     Resolved run{rig.bytes(view, output), {}, rig.count(counter)};
     run.pixels = testing::decode(settings_.output.linear, run.bytes);
     reprojections_.assign(current.reference.colour.size(), {0, 0, 1});

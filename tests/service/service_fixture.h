@@ -33,6 +33,7 @@ struct HostFrame {
   CameraMotion camera = {};
   bool reset = false;
   int parity = 0;
+  float exposure = 0;
 };
 
 using Codes = std::array<std::uint8_t, 4>;
@@ -109,6 +110,7 @@ class ServiceRig {
     inputs.jitter = frame.jitter;
     inputs.camera = frame.camera;
     inputs.reset = frame.reset;
+    inputs.exposure = frame.exposure;
     inputs.parity = frame.parity;
     inputs.frame_index = count_ - 1;
     return inputs;

@@ -132,6 +132,7 @@ HostFrame TemporalScene::render(int frame, Extent render, Vec2 jitter) const {
   HostFrame host;
   host.render = render;
   host.jitter = jitter;
+  host.exposure = exposure;
   host.colour = [=, this](int x, int y) { return colour_at(place_of(x, y), frame); };
   host.velocity = [=, this](int x, int y) {
     const Place place = place_of(x, y);

@@ -35,6 +35,7 @@ struct TemporalScene {
   Extent output = {160, 96};
   std::vector<Surface> surfaces;
   std::function<double(Place, int frame)> light;  // multiplies colour; none: 1
+  float exposure = 0;                             // as FrameInputs has it
 
   Pixel colour_at(Place place, int frame) const;
   // The mean of 4x4 places in each output pixel.
