@@ -120,17 +120,18 @@ static inline float4 lags_around(__global const LagTotal* lags, int tiles_x, int
 }
 
 // Returns how far history lags behind, in parts of its light. What only some tiles show is a change of its own there:
-// it counts little.
-static inline float lag_of(float4 sum) {
+// it counts little; so does what few tiles show. `units`: of a tile's light.
+static inline float lag_of(float4 sum, float units) {
   if (!(sum.x * sum.z > 0.0f)) return 0.0f;
-  const float mean = sum.x / max(sum.y, 1.0f), usual = sum.z / max(sum.w, 1.0f);
+  const float tiles = sum.y / units;
+  const float mean = sum.x / max(sum.y, 1.0f), usual = sum.z / max(sum.w, units * LAG_TILES / (tiles * tiles));
   return fabs(mean) > fabs(usual) ? usual * usual / mean : mean;
 }
 
 // Returns the broad gain by LagTotal around a tile, and learns the trend. Without evidence nothing changes.
-static inline float follow_light(float4 sum, float* trend) {
+static inline float follow_light(float4 sum, float units, float* trend) {
   if (!(sum.y > 0.0f)) return 1.0f;
-  const float surprise = lag_of(sum) - *trend;
+  const float surprise = lag_of(sum, units) - *trend;
   const float change = *trend + clamp(fabs(surprise) / LAG_AT_ONCE, LAG_PART_MIN, 1.0f) * surprise;
   *trend += TREND_PART * clamp(surprise, -TREND_SURPRISE_MAX, TREND_SURPRISE_MAX);
   return fabs(change) > GAIN_CHANGE_MIN ? clamp(1.0f + change, 1.0f / GAIN_MAX, GAIN_MAX) : 1.0f;
@@ -290,7 +291,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
                      (changes ? (1.0f - PERSISTENCE_MEMORY) * change.direction : 0.0f);
   const bool is_local = changes && tile.persistence * change.direction > PERSISTENCE_MIN;
   tile.trend = previous[i].trend;
-  const float broad = follow_light(lags_around(total->lags, tiles_x, tiles_y, x, y), &tile.trend);
+  const float broad = follow_light(lags_around(total->lags, tiles_x, tiles_y, x, y), lag_units(tiles_x, tiles_y), &tile.trend);
   tile.gain = is_local ? clamp(1.0f + change.relative, 1.0f / GAIN_MAX, GAIN_MAX) : broad;
   const float explained = (broad - 1.0f) * own.light / max(own.count, 1.0f);
   const bool is_widespread = (float)total->changed > WHOLE_CHANGED_TILES_MIN * (float)(tiles_x * tiles_y);

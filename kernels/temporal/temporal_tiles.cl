@@ -175,13 +175,12 @@ static inline void add_means(TotalLight* sum, const TemporalTileParams* params, 
   sum->changed += tile.history_error > CHANGED_TILE_ERROR_MIN * tile.light;
 }
 
-// Adds how far history lags behind in tile (x, y). No sum goes beyond an int.
+// Adds how far history lags behind in tile (x, y).
 static inline void add_lag(__global TotalLight* total, const TemporalTileParams* params, TileEvidence tile, int x,
                            int y) {
   if (!(tile.count > 0.0f)) return;
   const int column = x * kLagColumns / params->tiles_x, row = y * kLagRows / params->tiles_y;
-  const int tiles = (params->tiles_x / kLagColumns + 1) * (params->tiles_y / kLagRows + 1);
-  const float units = min((float)kLagUnits, 0x1p30f / (LAG_MAX * (float)tiles));
+  const float units = lag_units(params->tiles_x, params->tiles_y);
   const float light = tile.lit + LAG_LIGHT_FLOOR * tile.count;
   const float lag = clamp(tile.lag / light, -LAG_MAX, LAG_MAX);
   const int lit = convert_int(units * tile.lit / light);

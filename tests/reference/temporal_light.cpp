@@ -52,12 +52,13 @@ constexpr double kPersistenceMemory = .6;   // part of persistence that is kept,
 constexpr double kPersistenceMin = .62;     // two coherent frames give .4 + .6 * .4 = .64
 constexpr double kGainMax = 4;              // and 1 / 4 the least
 constexpr double kLagAtOnce = .02;          // part of the light: of less a part is corrected
-constexpr double kLagPartMin = .2;          // each frame
-constexpr double kTrendPart = .02;          // part of the surprise that is learnt, each frame
-constexpr double kTrendSurpriseMax = .05;   // part of the light
-constexpr double kGainChangeMin = .0005;    // part of the light
-constexpr double kLightSumMin = 1e-6;       // against a division by 0
-constexpr double kWholeCoherenceMin = .8;   // coherence of the whole picture
+constexpr double kLagTiles = 32;    // of no lag beside those of a part, over the square of their number
+constexpr double kLagPartMin = .2;  // each frame
+constexpr double kTrendPart = .02;  // part of the surprise that is learnt, each frame
+constexpr double kTrendSurpriseMax = .05;  // part of the light
+constexpr double kGainChangeMin = .0005;   // part of the light
+constexpr double kLightSumMin = 1e-6;      // against a division by 0
+constexpr double kWholeCoherenceMin = .8;  // coherence of the whole picture
 
 // Rejection.
 constexpr double kJudgeErrorFloor = .02;          // added to the neighbours' mean error, the unit of changes
@@ -160,20 +161,27 @@ LagTotalOf<Real> lags_around(const LightInputs& in, const TotalLightOf<Real>& to
   return sum;
 }
 
+// Of a tile's light in LagTotal.
+double lag_units(const LightInputs& in) {
+  return std::min(65536., 0x1p28 / ((in.tiles_x / kLagColumns + 1) * (in.tiles_y / kLagRows + 1)));
+}
+
 // How far history lags behind.
 template <typename Real>
-Real lag_of(const LagTotalOf<Real>& sum) {
+Real lag_of(const LagTotalOf<Real>& sum, double units) {
   if (!(sum.lag * sum.usual_lag > 0)) return 0;
-  const Real mean = sum.lag / max(sum.lit, 1), usual = sum.usual_lag / max(sum.usual_lit, 1);
+  const Real tiles = sum.lit / units;
+  const Real mean = sum.lag / max(sum.lit, 1);
+  const Real usual = sum.usual_lag / max(sum.usual_lit, units * kLagTiles / (tiles * tiles));
   return abs(mean) > abs(usual) ? usual * usual / mean : mean;
 }
 
 // The broad gain by what is around a tile; learns the trend. Without evidence nothing changes.
 template <typename Real>
-Real broad_gain(const LagTotalOf<Real>& sum, const Real& trend, TileLightOf<Real>& light) {
+Real broad_gain(const LagTotalOf<Real>& sum, double units, const Real& trend, TileLightOf<Real>& light) {
   light.trend = trend;
   if (!(sum.lit > 0)) return Real(1);
-  const Real surprise = lag_of(sum) - trend;
+  const Real surprise = lag_of(sum, units) - trend;
   const Real change = trend + surprise * clamp(abs(surprise) / kLagAtOnce, kLagPartMin, 1);
   light.trend = trend + kTrendPart * clamp(surprise, -kTrendSurpriseMax, kTrendSurpriseMax);
   return abs(change) > kGainChangeMin ? clamp(1 + change, 1 / kGainMax, kGainMax) : Real(1);
@@ -301,7 +309,8 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
   TileLightOf<Real> light;
   const bool is_widespread = total.changed > kWholeChangedTilesMin * in.tiles_x * in.tiles_y;
   const bool relit = is_relit(total, is_widespread);
-  const Real broad = broad_gain<Real>(lags_around(in, total, x, y), in.before[i].light.trend, light);
+  const Real broad =
+      broad_gain<Real>(lags_around(in, total, x, y), lag_units(in), in.before[i].light.trend, light);
   const Real local = local_gain(sums, before, light);
   light.gain = local == 1 ? broad : local;
   const Real explained = (broad - 1) * evidence.light / std::max(evidence.count, 1);

@@ -120,6 +120,12 @@ typedef struct TotalLight {
 QUINCUNX_CHECK_SIZE(TotalLight, 28 + 16 * kLagParts);
 enum { kLightUnits = 2048, kLagUnits = 65536 };
 
+// Units of a tile's light in LagTotal: no sum goes beyond an int, where no lag exceeds LAG_MAX, which is 4.
+static inline float lag_units(int tiles_x, int tiles_y) {
+  const float most = 0x1p28f / (float)((tiles_x / kLagColumns + 1) * (tiles_y / kLagRows + 1));
+  return most < (float)kLagUnits ? most : (float)kLagUnits;
+}
+
 #ifdef __cplusplus
 }  // namespace quincunx
 #endif
