@@ -123,8 +123,9 @@ static inline float4 lags_around(__global const LagTotal* lags, int tiles_x, int
 // it counts little; so does what few tiles show. `units`: of a tile's light.
 static inline float lag_of(float4 sum, float units) {
   if (!(sum.x * sum.z > 0.0f)) return 0.0f;
-  const float tiles = sum.y / units;
-  const float mean = sum.x / max(sum.y, 1.0f), usual = sum.z / max(sum.w, units * LAG_TILES / (tiles * tiles));
+  const float tiles = sum.y / units, square = tiles * tiles;
+  const float mean = sum.x / max(sum.y, 1.0f);
+  const float usual = sum.z / max(sum.w, units * LAG_TILES / (square * square));
   return fabs(mean) > fabs(usual) ? usual * usual / mean : mean;
 }
 
@@ -291,7 +292,8 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
                      (changes ? (1.0f - PERSISTENCE_MEMORY) * change.direction : 0.0f);
   const bool is_local = changes && tile.persistence * change.direction > PERSISTENCE_MIN;
   tile.trend = previous[i].trend;
-  const float broad = follow_light(lags_around(total->lags, tiles_x, tiles_y, x, y), lag_units(tiles_x, tiles_y), &tile.trend);
+  const float4 lags = lags_around(total->lags, tiles_x, tiles_y, x, y);
+  const float broad = follow_light(lags, lag_units(tiles_x, tiles_y), &tile.trend);
   tile.gain = is_local ? clamp(1.0f + change.relative, 1.0f / GAIN_MAX, GAIN_MAX) : broad;
   const float explained = (broad - 1.0f) * own.light / max(own.count, 1.0f);
   const bool is_widespread = (float)total->changed > WHOLE_CHANGED_TILES_MIN * (float)(tiles_x * tiles_y);

@@ -52,7 +52,7 @@ constexpr double kPersistenceMemory = .6;   // part of persistence that is kept,
 constexpr double kPersistenceMin = .62;     // two coherent frames give .4 + .6 * .4 = .64
 constexpr double kGainMax = 4;              // and 1 / 4 the least
 constexpr double kLagAtOnce = .02;          // part of the light: of less a part is corrected
-constexpr double kLagTiles = 32;    // of no lag beside those of a part, over the square of their number
+constexpr double kLagTiles = 64;    // of no lag beside those of a part, over the fourth power of their number
 constexpr double kLagPartMin = .2;  // each frame
 constexpr double kTrendPart = .02;  // part of the surprise that is learnt, each frame
 constexpr double kTrendSurpriseMax = .05;  // part of the light
@@ -172,7 +172,7 @@ Real lag_of(const LagTotalOf<Real>& sum, double units) {
   if (!(sum.lag * sum.usual_lag > 0)) return 0;
   const Real tiles = sum.lit / units;
   const Real mean = sum.lag / max(sum.lit, 1);
-  const Real usual = sum.usual_lag / max(sum.usual_lit, units * kLagTiles / (tiles * tiles));
+  const Real usual = sum.usual_lag / max(sum.usual_lit, units * kLagTiles / (tiles * tiles * tiles * tiles));
   return abs(mean) > abs(usual) ? usual * usual / mean : mean;
 }
 

@@ -38,7 +38,7 @@
 #define TREND_SURPRISE_MAX 0.05f   // of the light: of more no more is learnt [S]
 #define GAIN_CHANGE_MIN 0.0005f    // of the light: halves hold no less [S]
 #define LAG_LIGHT_FLOOR 0.02f      // luma: added to a tile's light [S]
-#define LAG_TILES 32.0f            // over the square of a part's tiles: tiles of no lag that count beside them [S]
+#define LAG_TILES 64.0f            // by the 4th power of a part's tiles: so many of no lag beside them [S]
 #define LAG_MAX 4.0f               // of a tile's light [N]
 
 // ---- temporal_light: the local gain, and whether the whole picture is relit.
@@ -83,7 +83,6 @@
 #define SOURCE_DISTANCE_MAX 65536.0f    // px: keeps places within what an int can hold [N]
 
 // ---- resolve_temporal: rectifying, in tone space.
-#define HARD_ALPHA_STEP_MIN 0.0625f  // alpha: by less samples of 0 or 1 do not move it at once [S]
 #define EVEN_ALPHA_MAX 0.03125f  // alpha: history that varies by more around is at an edge [S]
 #define BOX_SIZE 0.75f          // standard deviations on each side of the mean [S]
 #define BOX_MARGIN 0.02f        // tone: a distance that takes all confidence where the samples are all alike [S]

@@ -161,12 +161,11 @@ static inline void add_to_range(AlphaRange* range, float alpha) {
 }
 
 // Returns history's alpha moved into the range of this frame's, but for what it varies by around: samples may have
-// missed that. Those of cut-outs, which are 0 or 1, move only history that is even, and far off: colour keeps what a
-// soft edge has left.
+// missed that. Those of cut-outs, which are 0 or 1, move only history that is even.
 static inline float follow_alpha(float alpha, AlphaRange range, float uneven) {
   const bool is_soft = range.least > 0.0f && range.most < 1.0f;
+  if (!is_soft && uneven > EVEN_ALPHA_MAX) return alpha;
   const float step = clamp(alpha, range.least, range.most) - alpha;
-  if (!is_soft && (uneven > EVEN_ALPHA_MAX || fabs(step) < HARD_ALPHA_STEP_MIN)) return alpha;
   return alpha + copysign(max(fabs(step) - uneven, 0.0f), step);
 }
 

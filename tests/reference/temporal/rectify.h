@@ -116,7 +116,6 @@ void rectify_alpha(const Frame& frame, int x, int y, Known<Real>& known) {
 
 // Alpha: history that varies by more over 3x3 texels is at an edge.
 constexpr double kEvenAlphaMax = .03125;
-constexpr double kHardAlphaStepMin = .0625;
 
 struct AlphaRange {
   double least = 0, most = 0;
@@ -138,8 +137,8 @@ void follow_alpha(const AlphaRange& range, const Uneven& uneven, Real& alpha) {
   if (!is_below && !is_above) return;
   const double around = uneven();
   const bool is_soft = range.least > 0 && range.most < 1;
+  if (!is_soft && around > kEvenAlphaMax) return;
   const Real step = is_below ? range.least - alpha : alpha - range.most;
-  if (!is_soft && (around > kEvenAlphaMax || step < kHardAlphaStepMin)) return;
   const Real moved = max(step - around, 0);
   alpha = is_below ? alpha + moved : alpha - moved;
 }
