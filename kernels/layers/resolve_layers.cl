@@ -85,8 +85,8 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     LaneTexels samples = load_samples(colour, &frame, nearest.x, nearest.y);
 #if ALPHA
     // What nothing is known of, and no sample shows, is as transparent as what hides it.
-    const LaneMask is_shown = are_valid(held_samples(samples)) & (fetched.confidence == 0.0f);
-    known_alpha = select(known_alpha, last_channels(samples), is_shown);
+    const LaneTexels held = held_samples(samples);
+    known_alpha = select(known_alpha, last_channels(held), are_valid(held) & (fetched.confidence == 0.0f));
     const LayerSources* from = &fetched_both.far.from;
     const Positions from_x = {from->x, from->fraction_x}, from_y = {from->y, from->fraction_y};
     known_alpha = follow_alphas(colour, &frame, past.far, past.alpha, nearest_texels(from_x), nearest_texels(from_y),
