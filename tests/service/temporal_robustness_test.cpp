@@ -111,10 +111,10 @@ TEST(TemporalRobustness, BadSamplesLeaveWithinOneFrame) {
   }
 }
 
-// Nothing is left of samples that overflowed in the very first frame, whether history is copied or resampled.
+// Nothing is left of samples that are no light in the very first frame, whether history is copied or resampled.
 TEST(TemporalRobustness, InvalidSamplesWithoutHistoryLeaveAtOnce) {
   for (const Place turn : {Place(1), std::polar(1., .01)}) {
-    for (const float value : {kInf, -kInf, 65504.f, kNan}) {
+    for (const float value : {-kInf, kNan}) {
       TemporalScene scene = moving_scene({.4, .1});
       scene.surfaces[0].turn = turn;
       scene.surfaces[0].texture = testing::plain_texture(.7f, .2f, .1f);
