@@ -116,6 +116,8 @@ void check_image(const char* name, const VulkanImage& image, PixelFormat format,
                                       : "has an image and a buffer; give one");
     return;
   }
+  if (image.image != VK_NULL_HANDLE && image.layout == VK_IMAGE_LAYOUT_UNDEFINED)
+    add("has the layout UNDEFINED; give the one that it has, and gets back");
   const std::vector<VkFormat> allowed = formats_of(format, is_depth);
   if (std::find(allowed.begin(), allowed.end(), image.format) == allowed.end()) {
     add(fmt::format("has VkFormat {} and must have {}, with texels of {}", static_cast<int>(image.format),
@@ -190,6 +192,7 @@ struct VulkanBridge::Impl {
   std::uint64_t frames = 0;
   bool presenting = false;
   std::string reason;
+  std::vector<VkBufferCopy> rows;  // of the copy that is recorded; kept for its memory
 };
 
 VulkanBridge::Impl::Impl(const VulkanContext& callers, const Device& with, const BridgeSettings& wanted)
@@ -315,15 +318,15 @@ void VulkanBridge::Impl::begin(Crossing& crossing) {
 void VulkanBridge::Impl::submit(Crossing& crossing, bool to_cl, const VulkanSemaphore& wait,
                                 const VulkanSemaphore& signal) {
   check_vk(functions.EndCommandBuffer(crossing.commands), "vkEndCommandBuffer");
-  struct List {
-    std::vector<VkSemaphore> semaphores;
-    std::vector<std::uint64_t> values;
+  struct List {  // the caller's and the bridge's
+    std::array<VkSemaphore, 2> semaphores = {};
+    std::array<std::uint64_t, 2> values = {};
+    std::uint32_t size = 0;
     void add(const VulkanSemaphore& one) {
       if (one.semaphore == VK_NULL_HANDLE) return;
-      semaphores.push_back(one.semaphore);
-      values.push_back(one.value);
+      semaphores[size] = one.semaphore;
+      values[size++] = one.value;
     }
-    std::uint32_t size() const { return static_cast<std::uint32_t>(semaphores.size()); }
   } waits, signals;
   waits.add(wait);
   signals.add(signal);
@@ -331,21 +334,22 @@ void VulkanBridge::Impl::submit(Crossing& crossing, bool to_cl, const VulkanSema
   if (released && std::exchange(released->signalled, false))
     waits.add({as<VkSemaphore>(released->vulkan.semaphore)});
   if (to_cl && crossing.to_cl) signals.add({as<VkSemaphore>(crossing.to_cl->vulkan.semaphore)});
-  const std::vector<VkPipelineStageFlags> stages(waits.semaphores.size(), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
+  constexpr VkPipelineStageFlags kStages[] = {VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                                              VK_PIPELINE_STAGE_ALL_COMMANDS_BIT};
   const VkTimelineSemaphoreSubmitInfo timeline = {.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
                                                   .pNext = nullptr,
-                                                  .waitSemaphoreValueCount = waits.size(),
+                                                  .waitSemaphoreValueCount = waits.size,
                                                   .pWaitSemaphoreValues = waits.values.data(),
-                                                  .signalSemaphoreValueCount = signals.size(),
+                                                  .signalSemaphoreValueCount = signals.size,
                                                   .pSignalSemaphoreValues = signals.values.data()};
   const VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                              .pNext = wait.value != 0 || signal.value != 0 ? &timeline : nullptr,
-                             .waitSemaphoreCount = waits.size(),
+                             .waitSemaphoreCount = waits.size,
                              .pWaitSemaphores = waits.semaphores.data(),
-                             .pWaitDstStageMask = stages.data(),
+                             .pWaitDstStageMask = kStages,
                              .commandBufferCount = 1,
                              .pCommandBuffers = &crossing.commands,
-                             .signalSemaphoreCount = signals.size(),
+                             .signalSemaphoreCount = signals.size,
                              .pSignalSemaphores = signals.semaphores.data()};
   check_vk(functions.QueueSubmit(context.queue, 1, &info, crossing.copied), "vkQueueSubmit");
   crossing.copying = true;
@@ -400,7 +404,7 @@ void VulkanBridge::Impl::copy(Crossing& crossing, const VulkanImage& image, cons
   if (image.buffer != VK_NULL_HANDLE) {
     const auto width = static_cast<std::size_t>(extent.width);
     const std::size_t row_bytes = (image.row_texels != 0 ? image.row_texels : width) * texel;
-    std::vector<VkBufferCopy> rows;
+    rows.clear();
     for (std::size_t y = 0; y < static_cast<std::size_t>(extent.height); ++y) {
       const VkDeviceSize ours = begin + y * view.row_pitch(), callers = image.offset + y * row_bytes;
       rows.push_back({to_buffer ? callers : ours, to_buffer ? ours : callers, width * texel});

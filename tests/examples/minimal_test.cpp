@@ -6,12 +6,14 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 
+#include "picture_file.h"
 #include "tools/temporary_folder.h"
 
 namespace {
+
+using quincunx::testing::mean_square_error;
 
 // The method's picture of one frame, as the screen shows it.
 std::string shown(Method method, Extent render, const std::vector<float>& rgba) {
@@ -50,26 +52,13 @@ std::vector<float> truth(int frame) {
   return rgba;
 }
 
-double mean_square_error(const std::string& a, const std::string& b) {
-  EXPECT_EQ(a.size(), b.size());
-  double sum = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    const double difference = static_cast<unsigned char>(a[i]) - static_cast<unsigned char>(b[i]);
-    sum += difference * difference;
-  }
-  return sum / static_cast<double>(a.size());
-}
-
 // Measured: 212 against 1543 codes squared.
 TEST(MinimalExample, ItsPictureHasHalfTheErrorOfBilinearAtMost) {
   quincunx::testing::TemporaryFolder folder;
   std::string path = folder.file("picture.ppm");
   char* arguments[] = {path.data(), path.data()};
   ASSERT_EQ(minimal_main(2, arguments), 0);
-  const std::string file = quincunx::testing::read_file(path);
-  const std::string head = "P6 640 360 255\n";
-  ASSERT_EQ(file.substr(0, head.size()), head);
-  const std::string picture = file.substr(head.size());
+  const std::string picture = quincunx::testing::ppm_texels(quincunx::testing::read_file(path), kOutput);
   const std::string wanted = shown(Method::kPoint, kOutput, truth(63));
   const std::string bilinear = shown(Method::kBilinear, kRender, draw(kRender, {}, 63));
   EXPECT_GT(mean_square_error(wanted, std::string(wanted.size(), '\0')), 1000) << "the picture is black";

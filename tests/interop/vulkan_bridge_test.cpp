@@ -360,6 +360,8 @@ TEST_F(VulkanBridgeTest, BadCallsAreNamed) {
       << message;
   EXPECT_TRUE(contains(message, "reactive is missing; give an image or a buffer")) << message;
   EXPECT_FALSE(contains(message, "colour")) << message;
+  frame.colour.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  EXPECT_TRUE(contains(bridge->import(frame, kTarget).status().message(), "colour has the layout UNDEFINED"));
   EXPECT_TRUE(contains(bridge->present(colour.as_image()).message(), "no picture was begun"));
   ASSERT_TRUE(bridge->begin_present().ok());
   EXPECT_TRUE(contains(bridge->present(colour.as_image()).message(),

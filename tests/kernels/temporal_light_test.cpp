@@ -38,7 +38,7 @@ class Finder {
   double uniform() { return uniform_(random_); }
   float below(double limit) { return static_cast<float>(limit * uniform()); }
 
-  // Of a part of the picture, up to `most` of its light; now and then without evidence.
+  // Sums of a part of the picture, up to `most` of its light; now and then without evidence.
   LagTotal lag(double most) {
     if (uniform() < .1) return {};
     const auto below_int = [&](double limit) { return static_cast<int>(limit * uniform()); };

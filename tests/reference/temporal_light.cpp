@@ -161,7 +161,7 @@ LagTotalOf<Real> lags_around(const LightInputs& in, const TotalLightOf<Real>& to
   return sum;
 }
 
-// Of a tile's light in LagTotal.
+// How many units of LagTotal a tile's light has.
 double lag_units(const LightInputs& in) {
   return std::min(65536., 0x1p28 / ((in.tiles_x / kLagColumns + 1) * (in.tiles_y / kLagRows + 1)));
 }

@@ -153,7 +153,7 @@ TEST_P(Alpha, ItIsAsGoodAsAColour) {
   }
 }
 
-// Of the whole frame, to nearly nothing and back to all.
+// The whole frame's alpha, to nearly nothing and back to all.
 TEST_P(Alpha, ItFollowsAFade) {
   const int frame = GetParam().both_ways ? kShownBothWays : kLast;
   for (const float step : {-.03f, .03f}) {

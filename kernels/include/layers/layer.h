@@ -3,8 +3,8 @@
 //
 // Where two surfaces at different depths that move differently meet, a texel has two histories: of the *far* layer,
 // whose place is that of the one history elsewhere, and of the *near* layer, which follows the near surface's motion.
-// Of the near one it has the *coverage*, the part of the texel that the surface hides, however transparent it is; its
-// colour and alpha are multiplied by that. The picture is near + (1 - coverage) far. (docs/layers.md)
+// The near layer's *coverage* is the part of the texel that its surface hides, however transparent it is; its colour
+// and alpha are multiplied by that. The picture is near + (1 - coverage) far. (docs/layers.md)
 #pragma once
 
 #include "temporal/tile.h"

@@ -156,7 +156,7 @@ AlphaRange alphas_around(const Frame& frame, int x, int y, const Counts& counts)
   return range;
 }
 
-// Of a pixel of one layer. `alpha_at(x, y)`, `has_two(x, y)`: of a texel, clamped to the edge.
+// Lets the alpha of a pixel of one layer follow. `alpha_at(x, y)`, `has_two(x, y)`: of a texel, clamped to the edge.
 template <typename Real, typename AlphaAt, typename HasTwo>
 void follow_alpha_of_one(const Frame& frame, int x, int y, const std::array<int, 2>& texel,
                          const AlphaAt& alpha_at, const HasTwo& has_two, Real& alpha) {
