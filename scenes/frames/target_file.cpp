@@ -35,7 +35,9 @@ std::vector<Attribute> attributes_of(const TargetFile& file) {
        .reset = file.frame.reset,
        .near_plane = file.camera.near_plane,
        .depth_kind = file.linear_depth ? tools::DepthKind::kLinear : tools::DepthKind::kDeviceReversed,
-       .world_to_ndc = to_attribute(matrices.clip_from_world())});
+       .world_to_ndc = to_attribute(matrices.clip_from_world()),
+       // Colour of 8 bits went through it.
+       .exposure = file.frame.targets.codes.empty() ? file.frame.view.display.exposure : 1});
   attributes.push_back({"quincunx:dt", static_cast<float>(1 / file.fps)});
   attributes.push_back({"worldToCamera", to_attribute(glm::mat4(matrices.camera_from_world))});
   attributes.push_back(

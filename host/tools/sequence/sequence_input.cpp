@@ -135,6 +135,7 @@ Result<SequenceFormat> settle(const SequenceInput& input, const std::string& fir
   if (!input.jitter.text().empty()) std::erase(format.ignored, "jitter");
   format.jitter = input.jitter;
   format.jitter.settle(attributes);
+  format.has_exposure = attributes.exposure.has_value();
   format.cuts = input.cuts;
   if (!input.output && !attributes.output) {
     return Status::invalid(fmt::format(
@@ -265,6 +266,7 @@ std::string summary_of(const SequenceFormat& format) {
   }
   if (format.reactive_files) text += fmt::format("; reactive {}", format.reactive_files->text());
   if (format.two_way > 0) text += two_way_text(format);
+  if (format.has_exposure) text += "; exposure attribute";
   if (!format.cuts.empty()) text += fmt::format("; cuts before {}", fmt::join(format.cuts, ","));
   return text + fmt::format("; jitter {}", format.jitter.text());
 }

@@ -79,6 +79,7 @@ struct SequenceFormat {
   Vec2 depth_range = kWholeRange;
   float near_plane = kUnknownNear;
   JitterSource jitter;
+  bool has_exposure = false;       // the first frame's attributes tell it
   std::vector<std::int64_t> cuts;  // as SequenceInput has them
   Extent output;
   bool has_reactive() const { return channels.has(InputPlane::kReactive) || reactive_files; }

@@ -156,6 +156,7 @@ Status read_unguarded(const std::string& path, const SequenceFormat& format, con
 
   frame.number = expected.number;
   frame.render = expected.render;
+  frame.exposure = attributes->exposure.value_or(0);
   frame.world_to_ndc = attributes->world_to_ndc;
   if (frame.world_to_ndc) frame.world_to_ndc = to_screen(*frame.world_to_ndc, format.camera);
   frame.kept.clear();

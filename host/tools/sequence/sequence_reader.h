@@ -24,6 +24,7 @@ struct SequenceFrame {
   Extent render;
   // In the plan's formats; colour and albedo as asked for, RGBA16F or RGBA32F. Empty where not read.
   PerPlane<std::vector<std::byte>> texels;
+  float exposure = 0;                     // as FrameInputs has it, by the file's attribute; 0: unknown
   std::optional<Matrix> world_to_ndc;     // to -1 to 1, +y up
   bool negative_depth = false;            // in most pixels of the file
   std::optional<RecordedFrame> recorded;  // then the images above are empty

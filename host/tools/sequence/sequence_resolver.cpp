@@ -27,9 +27,9 @@ int writing_threads(int threads) {
 // Returns what multiplies light before it is displayed.
 float exposure_of(const SequenceFrame& frame, const ResolvePlan& plan, float asked) {
   if (plan.settings.colour == PixelFormat::kRGBA8) return 1;  // which it went through already
-  if (!frame.recorded) return asked > 0 ? asked : 1;
-  const float recorded = frame.recorded->inputs.exposure > 0 ? frame.recorded->inputs.exposure : 1;
-  return (asked > 0 ? asked : recorded) * frame.recorded->exposure_image.value_or(1);
+  const float told = frame.recorded ? frame.recorded->inputs.exposure : frame.exposure;
+  const float image = frame.recorded ? frame.recorded->exposure_image.value_or(1) : 1;
+  return (asked > 0 ? asked : told > 0 ? told : 1) * image;
 }
 
 // RGBA, tightly packed.
@@ -190,7 +190,7 @@ Result<FrameInputs> SequenceResolver::inputs_of(Stream& stream, const SequenceFr
   }
   inputs.render_extent = frame.render;
   inputs.jitter = scanned.jitter;
-  inputs.exposure = job_.exposure;
+  inputs.exposure = job_.exposure > 0 ? job_.exposure : frame.exposure;
   // A frame that turned out bad while it was read may be missing here, too.
   inputs.reset =
       backward ? stream.last - 1 != frame.number : scanned.reset || stream.last + 1 != frame.number;

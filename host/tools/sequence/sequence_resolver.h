@@ -30,7 +30,7 @@ struct SequenceJob {
   SequenceFormat format;
   SequenceScan scan;
   std::optional<SequenceOutput> output;  // absent: frames are only scored
-  float exposure = 0;                    // exposure of a picture as displayed; 0: 1, or the recorded one
+  float exposure = 0;                    // of all frames; 0: each frame's own
   int threads = 1;                       // that read, and that write, at least one of each
   bool skip_bad_frames = false;
   std::uint64_t memory = kDefaultHistoryBytes;  // limit of histories that are kept
