@@ -2,8 +2,9 @@
 // exposure: what the frame's light is multiplied by to be exposed light, in which a usual scene has a mean of
 // EXPOSED_MEAN. Rules with constants of light (history, sharpening) are made for that, whatever the unit of light.
 //   wanted    1.25 times the caller's factor, where there is one; else EXPOSED_MEAN / mean. The mean is that of luma
-//             over 32x16 blocks of up to 8x8 texels, each at most 256 times the geometric mean of all: lamps and
-//             fireflies do not make all else dark. What is black, negative, infinite or NaN does not count
+//             over 32x16 blocks of up to 8x8 texels (4x4 after a frame with a factor), each at most 256 times the
+//             geometric mean of all: lamps and fireflies do not make all else dark. What is black, negative, infinite
+//             or NaN does not count
 //   factor    of a first frame what is wanted; of others the previous one, times a power of two where that is more than
 //             2^.75 from what is wanted, in two frames one way. So history is rescaled without rounding, and seldom: a
 //             flash, or an exposure that jumps for a frame, leaves no trace. Without light, too, it stays; in a first
@@ -36,8 +37,8 @@ typedef struct Light {
   int count;
 } Light;
 
-static inline Light light_of_block(const ExposureParams* params, COLOUR_TEXELS colour, int block) {
-  const int columns = params->texels_x, rows = params->texels_y;
+static inline Light light_of_block(const ExposureParams* params, COLOUR_TEXELS colour, int columns, int rows,
+                                   int block) {
   const int left = block % kExposureColumns * columns, top = block / kExposureColumns * rows;
   Light light = {0.0f, 0, 0};
   for (int j = 0; j < rows; ++j) {
@@ -87,9 +88,13 @@ __kernel void exposure(const ExposureParams params, COLOUR_TEXELS colour, __glob
   const float by_image = factor > 0.0f && factor <= FLT_MAX ? factor : 0.0f;
   const float given = by_image == 0.0f ? params.given : by_image * (params.given > 0.0f ? params.given : 1.0f);
   const bool is_given = given > 0.0f;
+  Exposure before = {0.0f, 0.0f, 0.0f, 0.0f};
+  if (params.follows) before = *previous;
+  const int part = before.factor > 0.0f ? 2 : 1;  // only a change of more than 2^.75 matters then
+  const int columns = max(params.texels_x / part, 1), lines = max(params.texels_y / part, 1);
   const int first = get_local_id(0), step = get_local_size(0);
   for (int i = first; !is_given && i < kExposureRows * kExposureColumns; i += step)
-    blocks[i] = light_of_block(&params, colour, i);
+    blocks[i] = light_of_block(&params, colour, columns, lines, i);
   barrier(CLK_LOCAL_MEM_FENCE);
 
   // The geometric mean.
@@ -125,8 +130,6 @@ __kernel void exposure(const ExposureParams params, COLOUR_TEXELS colour, __glob
   if (is_given || count > 0)
     wanted = clamp(is_given ? EXPOSED_SHARE * given : EXPOSED_MEAN * (float)count / sum, 1.0f / EXPOSURE_MAX,
                    EXPOSURE_MAX);
-  Exposure before = {0.0f, 0.0f, 0.0f, 0.0f};
-  if (params.follows) before = *previous;
   Exposure found = {1.0f, 1.0f, 1.0f, wanted > 0.0f ? wanted : 1.0f};
   if (before.factor > 0.0f) {
     found.factor = wanted > 0.0f ? following(before, wanted) : before.factor;

@@ -11,7 +11,7 @@ namespace quincunx::reference {
 namespace {
 
 constexpr int kColumns = 32, kRows = 16;
-constexpr int kTexelsMax = 8;         // of a block on each axis
+constexpr int kTexelsMax = 8;         // of a block on each axis; half of them after a frame with a factor
 constexpr double kExposedMean = .16;  // found by search on the built-in scenes
 constexpr double kExposedShare = 1.25;
 constexpr double kBlockMeanMax = 256;
@@ -24,9 +24,9 @@ struct Block {
 };
 
 // Returns the mean of luma; 0 where there is no light.
-double mean_light(const Frame& frame) {
-  const int across = std::clamp(frame.width / kColumns, 1, kTexelsMax);
-  const int down = std::clamp(frame.height / kRows, 1, kTexelsMax);
+double mean_light(const Frame& frame, int part) {
+  const int across = std::max(std::clamp(frame.width / kColumns, 1, kTexelsMax) / part, 1);
+  const int down = std::max(std::clamp(frame.height / kRows, 1, kTexelsMax) / part, 1);
   std::vector<Block> blocks(kColumns * kRows);
   double logs = 0;
   int count = 0;
@@ -52,7 +52,7 @@ double mean_light(const Frame& frame) {
 }  // namespace
 
 double exposure_of(const Frame& frame, double given, double before, double wanted_before) {
-  const double mean = given > 0 ? 0 : mean_light(frame);
+  const double mean = given > 0 ? 0 : mean_light(frame, before > 0 ? 2 : 1);
   if (given <= 0 && mean == 0) return before > 0 ? before : 1;
   const double wanted = std::clamp(given > 0 ? kExposedShare * given : kExposedMean / mean, 0x1p-60, 0x1p60);
   if (before <= 0) return wanted;
