@@ -217,7 +217,7 @@ class Extras(unittest.TestCase):
 
     def test_content_is_measured(self):
         resolver = quincunx.Resolver((64, 64), (64, 64), measures_content=1)
-        self.assertEqual(set(resolver.device()), {"name", "profile", "pass_timer"})
+        self.assertEqual(set(resolver.device()), {"name", "profile", "pass_timer", "uuid"})
         moving = self.frame(0.5, (64, 64))
         moving["velocity"][:, :, 0] = 4 / 64
         for _ in range(3):
@@ -367,6 +367,54 @@ class Arrays(unittest.TestCase):
     def test_colour_of_bytes_without_alpha_covers_all(self):
         resolver = quincunx.Resolver((40, 30), method="point", colour="uint8", present=0)
         self.assertEqual(resolver.resolve(np.full((20, 30, 3), 255, np.uint8)).min(), 1)
+
+
+class Shared(unittest.TestCase):
+    """Memory that another API could have mapped: an array at the start of a page."""
+
+    def setUp(self):
+        self.resolver = quincunx.Resolver((16, 12), (8, 6), device="cpu", method="bilinear", present=False)
+        room = np.zeros(2 * 4096, np.uint8)
+        self.page = room[-room.__array_interface__["data"][0] % 4096:][:4096]
+        self.frame = sampled(8, 6).astype(np.float32)
+
+    def test_frames_lie_and_pictures_come_in_it(self):
+        memory = quincunx.SharedMemory(self.resolver, mapped=self.page, device=self.resolver.device()["uuid"])
+        colour, out = memory.image((6, 8, 4), "float32"), memory.image((12, 16, 4), "float32", offset=1024)
+        self.page[:768] = self.frame.ravel().view(np.uint8)
+        expected = self.resolver.resolve(self.frame)
+        for _ in range(2):
+            self.page[1024:] = 255
+            memory.acquire()
+            self.assertIs(self.resolver.resolve(colour, out=out), out)
+            memory.release()
+            self.resolver.finish()
+            made = self.page[1024:].view(np.float32)[:expected.size].reshape(expected.shape)
+            np.testing.assert_array_equal(made, expected)
+        memory.acquire()
+        np.testing.assert_array_equal(self.resolver.resolve(colour), expected)
+        del memory
+        np.testing.assert_array_equal(self.resolver.resolve(colour), expected)  # the image keeps it
+
+    def test_what_cannot_be_shared_is_refused(self):
+        memory = quincunx.SharedMemory(self.resolver, mapped=self.page)
+        half = memory.image((6, 8, 4), "float16")
+        for kind, sentence, refused in (
+                (quincunx.Error, "colour.format", lambda: self.resolver.resolve(half)),
+                (quincunx.Error, "colour.memory has 4096 bytes",
+                 lambda: self.resolver.resolve(memory.image((6, 8, 4), "float32", 4000))),
+                (ValueError, "an image of 3 channels of uint8 is none of", lambda: memory.image((6, 8, 3), "uint8")),
+                (ValueError, "mapped must be an array whose bytes", lambda: quincunx.SharedMemory(
+                    self.resolver, mapped=self.page[::2])),
+                (ValueError, "the 16 bytes of a UUID", lambda: quincunx.SharedMemory(self.resolver, device=b"1")),
+                (ValueError, "handle is 'win32'; it must be one of opaque-fd, dma-buf, mapped",
+                 lambda: quincunx.SharedMemory(self.resolver, handle="win32")),
+                (TypeError, "resolver is None", lambda: quincunx.SharedMemory(None, fd=0)),
+                (quincunx.Error, "cl_khr_external_memory_opaque_fd",
+                 lambda: quincunx.SharedMemory(self.resolver, fd=0, bytes=64)),
+                (quincunx.Error, "semaphore", lambda: quincunx.Semaphore(self.resolver, 0))):
+            with self.subTest(sentence), self.assertRaisesRegex(kind, sentence):
+                refused()
 
 
 class Ownership(unittest.TestCase):

@@ -261,6 +261,19 @@ TEST(Service, ABadFrameIsRefusedWholeAndHistoryStays) {
   EXPECT_TRUE(same_bits(rig.resolve(two), control.resolve(two)));
 }
 
+// Kernels would read and write beyond its end.
+TEST(Service, BuffersReachAsFarAsTheirImages) {
+  ServiceRig rig({}, Method::kQuincunx, {16, 16}, {16, 16});
+  FrameInputs inputs = rig.upload({.render = {16, 16}});
+  inputs.velocity.offset = 16;  // 16 x 16 texels of 8 bytes fill it
+  const FrameReport refused = rig.dispatch(inputs);
+  EXPECT_NE(refused.status.message().find("velocity.memory has 2048 bytes"), std::string::npos)
+      << refused.status.message();
+  EXPECT_NE(refused.status.message().find("need 2064"), std::string::npos) << refused.status.message();
+  inputs.velocity.offset = 0;
+  EXPECT_TRUE(rig.dispatch(inputs).ok());
+}
+
 TEST(Service, TheMemoryOfThePreviousFrameIsRefused) {
   ServiceRig rig({}, Method::kQuincunx, {16, 16}, {16, 16});
   FrameInputs inputs = rig.upload({.render = {16, 16}});
@@ -419,6 +432,8 @@ TEST(Service, ClearFillsTheRectangleOnly) {
   far.offset = std::size_t{1} << 40;
   const Status refused = service->clear(far, {5, 7}, value);
   EXPECT_NE(refused.message().find("image.offset"), std::string::npos) << refused.message();
+  far.offset = 16;
+  EXPECT_NE(service->clear(far, {5, 7}, value).message().find("image.memory has"), std::string::npos);
 }
 
 TEST(Service, ClearThatWasNotPlannedIsRefused) {

@@ -129,7 +129,7 @@ QUINCUNX_API void quincunx_device_uuid(const quincunx_device* device, uint8_t uu
 /* Memory and binary semaphores of another API, as SharedMemory and Semaphore of advanced/external.h have them. They may
  * be destroyed when the work that uses them is done. Errors: QUINCUNX_INVALID_ARGUMENT for a bad field and for memory
  * of another device, QUINCUNX_UNSUPPORTED where the device takes no such handle, QUINCUNX_DEVICE_FAILURE. */
-enum { QUINCUNX_OPAQUE_FD = 0, QUINCUNX_DMA_BUF = 1, QUINCUNX_MAPPED = 2 };
+enum quincunx_handle { QUINCUNX_OPAQUE_FD = 0, QUINCUNX_DMA_BUF = 1, QUINCUNX_MAPPED = 2 };
 QUINCUNX_API quincunx_status quincunx_memory_import(const quincunx_device* device,
                                                     const quincunx_external_memory* external,
                                                     quincunx_memory** memory);

@@ -131,11 +131,12 @@ void ResolveService::Impl::warm_up() {
 Status ResolveService::Impl::check(const FrameInputs& inputs, const FocusInputs* focus,
                                    const FrameOutputs& outputs) const {
   const bool adds = picture.chain().facts().two_way;  // and shows nothing
-  Status valid = adds ? validate_inputs(picture.plan(), inputs) : validate(picture.plan(), inputs, outputs);
+  Status valid = validate_frame(picture.plan(), inputs, adds ? nullptr : &outputs, Memory::kAsked);
   if (!valid.ok()) return valid;
   if (Status status = picture.check_history(inputs); !status.ok()) return status;
   if (focus == nullptr) return {};
-  const Status status = validate_focus(picture.plan(), region ? &region->plan() : nullptr, *focus);
+  const Status status =
+      validate_focus(picture.plan(), region ? &region->plan() : nullptr, *focus, Memory::kAsked);
   return status.ok() ? region->check_history(*focus) : status;
 }
 

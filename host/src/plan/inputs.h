@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What becomes of a caller's FrameInputs before passes see them: they are checked, and brought to the kernels'
 // conventions as far as no texel has to be touched: units and signs, the camera's matrix, rows of buffers.
-// convert_inputs does the rest. Pure.
+// convert_inputs does the rest. Pure, but for Memory::kAsked.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,16 @@
 
 namespace quincunx {
 
-// Parts of validate(): a frame without outputs; a focus, where `region` is the plan's focus_plan(), null where it has
-// none.
-Status validate_inputs(const ResolvePlan& plan, const FrameInputs& inputs);
-Status validate_focus(const ResolvePlan& plan, const ResolvePlan* region, const FocusInputs& focus);
-// Checks the offset and the pitch of any image that kernels read or write; `field` names it.
+// Whether a check asks OpenCL if buffers reach as far as their images.
+enum class Memory : std::uint8_t { kUnseen, kAsked };
+
+// Parts of validate(): a frame, whose outputs may be null; a focus, where `region` is the plan's focus_plan(), null
+// where it has none.
+Status validate_frame(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs* outputs,
+                      Memory memory);
+Status validate_focus(const ResolvePlan& plan, const ResolvePlan* region, const FocusInputs& focus,
+                      Memory memory);
+// Checks the layout, and the memory, of any image that kernels read or write; `field` names it.
 Status validate_layout(const ResolvePlan& plan, const char* field, const ImageView& image);
 
 // Each returns its argument unchanged where the conventions are the library's. The pitch of a buffer whose rows are

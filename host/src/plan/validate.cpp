@@ -25,7 +25,7 @@ const char* name(Storage storage) {
 // Complaints about the fields of a frame, collected so that one message names every bad one.
 class FrameCheck {
  public:
-  explicit FrameCheck(const ResolvePlan& plan) : plan_(plan) {}
+  FrameCheck(const ResolvePlan& plan, Memory memory) : plan_(plan), memory_(memory) {}
 
   void input(const char* field, const ImageView& image, PixelFormat format, Extent viewport);
   void viewport(const char* field, Extent viewport, Extent target);
@@ -42,7 +42,11 @@ class FrameCheck {
  private:
   void image_in(const char* field, const ImageView& image, PixelFormat format, Storage storage);
 
+  // Checks that the buffer goes on to the image's end.
+  void room(const char* field, const ImageView& image, std::size_t end);
+
   const ResolvePlan& plan_;
+  Memory memory_;
   std::string complaints_;
 };
 
@@ -118,6 +122,23 @@ void FrameCheck::layout(const char* field, const ImageView& image) {
         fmt::format("{0}.offset is {1}, {0}.pitch {2} and {0}.extent {3}x{4}; the image must end within "
                     "the first {5} bytes of its buffer, as kernels count texels in 32 bits",
                     field, image.offset, image.row_pitch(), image.extent.width, image.extent.height, most));
+  } else if (memory_ == Memory::kAsked) {
+    room(field, image, image.offset + rows * image.row_pitch() + row);
+  }
+}
+
+void FrameCheck::room(const char* field, const ImageView& image, std::size_t end) {
+  cl_mem_object_type kind = 0;
+  std::size_t bytes = 0;
+  if (clGetMemObjectInfo(image.memory, CL_MEM_TYPE, sizeof(kind), &kind, nullptr) != CL_SUCCESS ||
+      clGetMemObjectInfo(image.memory, CL_MEM_SIZE, sizeof(bytes), &bytes, nullptr) != CL_SUCCESS ||
+      kind != CL_MEM_OBJECT_BUFFER) {
+    complain(fmt::format("{}.memory is no OpenCL buffer; its storage says that it is one", field));
+  } else if (bytes < end) {
+    complain(fmt::format(
+        "{0}.memory has {1} bytes; {0}.offset {2}, {0}.pitch {3} and {0}.extent {4}x{5} "
+        "need {6}",
+        field, bytes, image.offset, image.row_pitch(), image.extent.width, image.extent.height, end));
   }
 }
 
@@ -264,15 +285,16 @@ void check_place(FrameCheck& check, const ResolvePlan& plan, const FocusInputs& 
 
 }  // namespace
 
-Status validate_focus(const ResolvePlan& plan, const ResolvePlan* region, const FocusInputs& focus) {
+Status validate_focus(const ResolvePlan& plan, const ResolvePlan* region, const FocusInputs& focus,
+                      Memory memory) {
   if (region == nullptr)
     return Status::invalid("focus is given, but the plan has none; set settings.focus.extent");
-  FrameCheck check(plan);
+  FrameCheck check(plan, memory);
   check_place(check, plan, focus);
   if (plan.settings.focus.mask)
     check.output("focus.mask", focus.mask, PixelFormat::kR8, Storage::kBuffer, plan.settings.focus.extent,
                  "region");
-  FrameCheck frame(*region);
+  FrameCheck frame(*region, memory);
   check_inputs(frame, *region, focus.frame);
   if (const Status status = frame.status(); !status.ok())
     check.complain("of focus.frame: " + std::string(status.message()));
@@ -280,29 +302,28 @@ Status validate_focus(const ResolvePlan& plan, const ResolvePlan* region, const 
 }
 
 Status validate_layout(const ResolvePlan& plan, const char* field, const ImageView& image) {
-  FrameCheck check(plan);
+  FrameCheck check(plan, Memory::kAsked);
   if (image.storage == Storage::kBuffer) check.layout(field, image);
   return check.status();
 }
 
-Status validate_inputs(const ResolvePlan& plan, const FrameInputs& inputs) {
-  FrameCheck check(plan);
+Status validate_frame(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs* outputs,
+                      Memory memory) {
+  FrameCheck check(plan, memory);
   check_inputs(check, plan, inputs);
+  if (outputs != nullptr) check_outputs(check, plan, *outputs);
   return check.status();
 }
 
 Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs) {
-  FrameCheck check(plan);
-  check_inputs(check, plan, inputs);
-  check_outputs(check, plan, outputs);
-  return check.status();
+  return validate_frame(plan, inputs, &outputs, Memory::kUnseen);
 }
 
 Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FocusInputs& focus,
                 const FrameOutputs& outputs) {
   if (Status status = validate(plan, inputs, outputs); !status.ok()) return status;
   const std::optional<ResolvePlan> region = plan.focus_plan();
-  return validate_focus(plan, region ? &*region : nullptr, focus);
+  return validate_focus(plan, region ? &*region : nullptr, focus, Memory::kUnseen);
 }
 
 }  // namespace quincunx

@@ -131,6 +131,7 @@ def words_of(enum):
 CHOICES = {name: words_of(name) for struct in ("settings", "controller_settings") for name in types_of(struct)
            if name in ENUMS and name != "method"}
 CHOICES["storage"] = {word: number for word, number in words_of("place").items() if word != "host"}
+CHOICES["handle"] = words_of("handle")
 CHOICES["colour"] = {kind: number for number, (channels, kind) in sorted(FORMATS.items()) if channels == 4}
 CHOICES["history_format"] = {kind: CHOICES["colour"][kind] for kind in ("float16", "float32")}
 
@@ -225,7 +226,7 @@ def fill(struct, made, values, settings=None, where=""):
             raise TypeError(f"'{name}' is no {what}; there are: {', '.join(names)}")
         for field, part in zip(names[name], (value,) if len(names[name]) == 1 else pair_of(name, value)):
             kind, count = types[field], field[:-1] + "_count"
-            if field in IMAGES[struct] and part is not None:
+            if field in IMAGES[struct] and part is not None and not isinstance(part, FFI.CData):
                 number = getattr(settings, field + "_format", IMAGES[struct][field])
                 part = image_over(pixels_of(where + field, part, *FORMATS[number]), number)
             elif count in types:
@@ -265,7 +266,7 @@ def call(name, *arguments):
     """
     function, (result, parameters) = getattr(LIBRARY, "quincunx_" + name), FUNCTIONS[name]
     kinds = FFI.typeof(function).args
-    if any(re.search("quincunx_(device|service)", kind.cname) for kind in kinds):
+    if any(re.search("quincunx_(device|service|memory|semaphore)", kind.cname) for kind in kinds):
         OPENED_BY.add(os.getpid())
         if len(OPENED_BY) > 1:
             raise Error(LIBRARY.QUINCUNX_UNSUPPORTED, "OpenCL does not work in this process, which was forked from one "
@@ -431,8 +432,13 @@ class Resolver(Handle):
         return call("plan_text", self._plan)
 
     def device(self):
-        """Returns {"name", "profile": how work is cut for it, "pass_timer": what times its passes}."""
-        return {name: call("device_" + name, self._device) for name in ("name", "profile", "pass_timer")}
+        """Returns {"name", "profile": how work is cut for it, "pass_timer": what times its passes, "uuid": bytes}."""
+        return {**{name: call("device_" + name, self._device) for name in ("name", "profile", "pass_timer")},
+                "uuid": bytes(map(int, call("device_uuid", self._device)))}
+
+    def finish(self):
+        """Waits until all that was begun is done: pictures that went into an image of SharedMemory, too."""
+        call("finish", self._service)
 
     def allow_timing_waits(self, allow=True):
         """Lets frames wait for each pass where the pass timer is "host clock", so that passes have times."""
@@ -448,12 +454,13 @@ class Resolver(Handle):
 
     @described("inputs")
     def resolve(self, colour, depth=None, velocity=None, reactive=None, jitter=(0, 0), presented=False,
-                output_extent=None, fading_from=None, fade_weight=1, **inputs):
+                output_extent=None, fading_from=None, fade_weight=1, out=None, **inputs):
         """Returns the picture of one frame, an array of (height, width, 4).
 
         It is linear float32, or with presented=True sRGB encoded uint8. Arrays of the frame's size are colour (h, w, 3
         or 4), depth (h, w), velocity (h, w, 2) and reactive (h, w), which is uint8, 0 to 1 or bool. converted() says
-        how other types are taken, or refused. docs/inputs.md has the conventions.
+        how other types are taken, or refused. docs/inputs.md has the conventions. Images of SharedMemory stand for
+        arrays; with one as `out` the picture goes there, which is returned at once: finish() waits for it.
 
         clip_to_previous_clip  (4, 4) or 16 numbers, column by column: of a matrix that multiplies columns (m @ v) m.T
         particles              {"colour": (h, w, 4), "depth": (h, w), "reactive": (h, w)}, of a size of their own
@@ -475,8 +482,11 @@ class Resolver(Handle):
             "output_extent": output_extent or (0, 0), **inputs}, self._settings)
         name = "presented" if presented else "linear"
         number = getattr(self._settings, name + "_format", IMAGES["outputs"][name])
-        picture = np.empty((*self.output_extent[::-1], FORMATS[number][0]), FORMATS[number][1])
-        call("dispatch", self._service, frame, new("outputs", **{name: image_over(picture, number)}), None)
+        picture = out
+        if out is None:
+            picture = np.empty((*self.output_extent[::-1], FORMATS[number][0]), FORMATS[number][1])
+        image = image_over(picture, number) if out is None else out
+        call("dispatch", self._service, frame, new("outputs", **{name: image}), None)
         return picture
 
     def reports(self):
@@ -501,6 +511,77 @@ class Resolver(Handle):
                 "passes": [("focus: " * bool(in_focus[i]) + text_at(passes[i].kernel), passes[i].ms, passes[i].bytes)
                            for i in range(report.pass_count)]})
         return found
+
+
+@described("external_memory")
+class SharedMemory(Handle):
+    """Memory of Vulkan, OpenGL or another API of the same machine, of which frames are read and into which pictures go.
+
+    resolver  the Resolver on whose device it is
+    mapped    in place of fd: an array over memory that was mapped, for devices that are the processor
+    device    bytes: the UUID of the device that it was allocated on, to be compared with resolver.device()["uuid"]
+
+        memory.acquire()
+        resolver.resolve(memory.image((h, w, 4), "float16"), ..., out=memory.image((height, width, 4), "float32", offset))
+        memory.release()
+    """
+
+    OBJECT = "memory"
+
+    def __init__(self, resolver, mapped=None, device=bytes(16), **external):
+        if not isinstance(resolver, Resolver):
+            raise TypeError(f"resolver is {resolver!r}; it must be of Resolver")
+        if not isinstance(device, bytes) or len(device) != 16:
+            raise ValueError(f"device is {device!r}; it must be the 16 bytes of a UUID")
+        made = fill("external_memory", new("external_memory", fd=-1), external)
+        made.device = device
+        if mapped is not None:
+            if not isinstance(mapped, np.ndarray) or not mapped.flags.c_contiguous:
+                raise ValueError("mapped must be an array whose bytes follow one another")
+            made.handle, made.bytes = LIBRARY.QUINCUNX_MAPPED, made.bytes or mapped.nbytes
+            made.mapped = FFI.cast("void *", mapped.__array_interface__["data"][0])
+        self.object, self._kept = call("memory_import", resolver._device, made), mapped
+
+    def image(self, shape, kind, offset=0, pitch=0):
+        """Returns an image in it, of (height, width[, channels]) and of a type, as "float16" or "uint8".
+
+        `offset` bytes from the start, a multiple of 16; `pitch` bytes from one row to the next, 0: tightly packed.
+        """
+        height, width, channels = (*shape, 1)[:3]
+        number = next((number for number, has in FORMATS.items() if has == (channels, str(np.dtype(kind)))), None)
+        if number is None:
+            raise ValueError(f"an image of {channels} channels of {kind} is none of {sorted(set(FORMATS.values()))}")
+        made = new("image", place=LIBRARY.QUINCUNX_BUFFER, format=number, width=width, height=height, offset=offset,
+                   pitch=pitch, memory=self._call("object"))
+        KEPT[made].append(self)
+        return made
+
+    def acquire(self):
+        """Takes it from the other API, which owns it first. Enqueued."""
+        self._call("acquire")
+
+    def release(self):
+        """Gives it back to the other API. Enqueued: Resolver.finish() waits for it, or the other API for a Semaphore."""
+        self._call("release", None)
+
+
+class Semaphore(Handle):
+    """A binary semaphore of Vulkan or OpenGL, on the device of `resolver`. `fd` is imported, and stays the caller's."""
+
+    OBJECT = "semaphore"
+
+    def __init__(self, resolver, fd):
+        if not isinstance(resolver, Resolver):
+            raise TypeError(f"resolver is {resolver!r}; it must be of Resolver")
+        self.object = call("semaphore_import", resolver._device, fd)
+
+    def wait(self):
+        """Lets what is enqueued from now on wait until the other API has signalled it."""
+        self._call("wait")
+
+    def signal(self):
+        """Signals it when all that was enqueued is done."""
+        self._call("signal")
 
 
 def resolve_sequence(pattern, out=None, *, program="quincunx-resolve", **options):
