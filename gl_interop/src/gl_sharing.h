@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "cl_handle.h"
-#include "depth_copy.h"
 #include "frame_layout.h"
 #include "quincunx/device.h"
 #include "quincunx_gl/bridge.h"
 #include "slot_ring.h"
+#include "texel_copy.h"
 
 namespace quincunx::gl {
 

@@ -17,7 +17,6 @@
 #include <string>
 #include <vector>
 
-#include "depth_copy.h"
 #include "fence.h"
 #include "frame_layout.h"
 #include "pixel_buffer.h"

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "depth_copy.h"
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/gl_calls.h"
 #include "state_scope.h"
+#include "texel_copy.h"
 
 namespace quincunx::gl {
 namespace {

@@ -108,12 +108,6 @@ Motion swinging(const glm::mat4& rest, glm::vec3 axis, float amplitude, double p
   };
 }
 
-Motion sliding(const glm::mat4& rest, glm::vec3 way, double period, int cycles, float phase) {
-  return [=](double seconds) {
-    return rest * moved_to(way * std::sin(phase_at(seconds, period, cycles) + phase));
-  };
-}
-
 Motion spinning(const glm::mat4& rest, glm::vec3 axis, double period, int cycles) {
   return [=](double seconds) { return rest * turned(phase_at(seconds, period, cycles), axis); };
 }

@@ -63,8 +63,6 @@ float phase_at(double seconds, double period, int cycles = 1);
 // `rest` swinging about `axis` through its origin: amplitude in radians.
 Motion swinging(const glm::mat4& rest, glm::vec3 axis, float amplitude, double period, int cycles,
                 float phase);
-// `rest` sliding along `way` and back.
-Motion sliding(const glm::mat4& rest, glm::vec3 way, double period, int cycles, float phase);
 // `rest` turning about `axis` through its origin.
 Motion spinning(const glm::mat4& rest, glm::vec3 axis, double period, int cycles);
 

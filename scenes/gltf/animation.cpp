@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/animation.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "gltf/geometry.h"
+#include "gltf/contents.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/geometry.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,8 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+
+#include "gltf/contents.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/materials.h"
-
 #include <fmt/format.h>
 
 #include <cstring>
 #include <memory>
 #include <string>
+
+#include "gltf/contents.h"
 
 // Our own copy of the decoder, with the two formats of glTF only: the less of it a file can reach, the
 // better.

@@ -12,10 +12,7 @@
 #include <optional>
 #include <utility>
 
-#include "gltf/animation.h"
-#include "gltf/document.h"
-#include "gltf/geometry.h"
-#include "gltf/materials.h"
+#include "gltf/contents.h"
 #include "scene.h"
 
 namespace quincunx::scenes {

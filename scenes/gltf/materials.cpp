@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/materials.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <map>
 #include <utility>
+
+#include "gltf/contents.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -19,7 +19,9 @@
 #include "tools/page/page.h"
 #include "tools/program/frame_pattern.h"
 #include "tools/program/program.h"
-#include "window/window_run.h"
+#ifdef QUINCUNX_HAS_WINDOW
+#include "window/window_session.h"
+#endif
 
 namespace quincunx::scenes {
 namespace {
@@ -123,6 +125,16 @@ Status compare(const RenderSession& session, const std::vector<float>& scales, t
     report.pacing.push_back(fixed.value()->report().pacing.front());
   }
   return {};
+}
+
+Status run_window([[maybe_unused]] const RenderOptions& options) {
+#ifdef QUINCUNX_HAS_WINDOW
+  auto session = WindowSession::create(options);
+  return session.ok() ? session.value()->run() : session.status();
+#else
+  return Status::unsupported(
+      "this build has no window; install the Debian packages libglfw3-dev and libimgui-dev and build again");
+#endif
 }
 
 int render(const RenderOptions& options) {

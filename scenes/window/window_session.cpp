@@ -12,7 +12,6 @@
 #include "tools/image/image_io.h"
 #include "tools/program/clock.h"
 #include "window/key_bindings.h"
-#include "window/window_run.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -321,12 +320,6 @@ void WindowSession::say(std::string message) {
   spdlog::info("{}", message);
   message_ = std::move(message);
   said_ = Clock::now();
-}
-
-Status run_window(const RenderOptions& options) {
-  auto session = WindowSession::create(options);
-  if (!session.ok()) return session.status();
-  return session.value()->run();
 }
 
 }  // namespace quincunx::scenes

@@ -24,9 +24,12 @@ namespace quincunx::scenes {
 
 class WindowSession {
  public:
+  // Errors: kUnsupported where there is no display; else of any part, as that part words them.
   static Result<std::unique_ptr<WindowSession>> create(const RenderOptions& options);
   ~WindowSession();
 
+  // Shows frames until the window is closed or `options.frames` are shown. The program ends when the display is lost:
+  // see window.h.
   Status run();
 
  private:

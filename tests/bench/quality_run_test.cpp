@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The promises of the quality controller on scripted loads, pictures and machines.
-#include "bench/traces/quality_run.h"
+#include "bench/traces/trace_run.h"
 
 #include <gtest/gtest.h>
 

@@ -101,7 +101,6 @@ struct LayerSampleOf {
   int tile = 0;                         // in which it lies
   bool has_begun = false;               // only now do its layers move apart: history holds both
 };
-using LayerSample = LayerSampleOf<double>;
 
 // `now`: this frame's grid with the records of age 0.
 template <typename Real>

@@ -11,7 +11,7 @@
 #include "tools/program/resolve_settings_options.h"
 #include "tools/program/work_queue.h"
 #include "tools/sequence/resolve_advice.h"
-#include "tools/sequence/sequence_noise.h"
+#include "tools/sequence/sequence_reader.h"
 
 namespace quincunx::tools {
 namespace {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "tools/sequence/sequence_noise.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include "tools/sequence/sequence_reader.h"
 #include "tools/sequence/sequence_scan.h"
 
 namespace quincunx::tools {
@@ -22,6 +23,13 @@ constexpr double kDark = .01;                   // of the mean light: such a til
 constexpr double kFewestTiles = .7;             // of all: what moves before a still camera tells too little
 // The noise of the tenth of the tiles that have least: clean scenes have up to .0014, Cycles at 16 samples .0049.
 constexpr double kClean = .0025;
+
+// A frame, or a part of it.
+struct LitFrame {
+  MotionSamples seen;        // depth may be empty
+  std::vector<float> light;  // linear
+  bool reset = false;        // motion leads to no frame before
+};
 
 struct Tile {
   double pairs = 0, squares = 0, light = 0;
@@ -141,8 +149,10 @@ LitFrame middle_of(const SequenceFrame& frame, const ScannedFrame& scanned) {
   return lit;
 }
 
-}  // namespace
-
+// Returns what noise_of() does, of frames that follow one another. What counts is how far samples of different frames
+// are apart that show, by motion, the same place of a surface to within a sixteenth of a pixel: texture and aliasing
+// are the same in both. Changes of the whole picture's light are taken off. Frames are noisy where nine tenths of the
+// picture are; then it is the noise that a fifth of it exceeds.
 float noise_between(std::span<const LitFrame> frames) {
   if (frames.empty()) return 0;
   const std::vector<Tile> tiles = tiles_of(frames);
@@ -161,6 +171,8 @@ float noise_between(std::span<const LitFrame> frames) {
   if (parts[parts.size() / 10] <= kClean) return 0;
   return static_cast<float>(std::min(parts[parts.size() * 4 / 5], 1.0));
 }
+
+}  // namespace
 
 std::optional<float> noise_of(const FramePattern& pattern, const SequenceFormat& format) {
   if (format.motion != MotionSource::kChannels) return 0;

@@ -62,6 +62,11 @@ struct MotionSamples {
 // of `next`, turned round. Not a number where `next` shows nothing of a sample's surface. Pure.
 std::vector<Vec2> turned_motion(const MotionSamples& now, const MotionSamples& next);
 
+// Returns the variance of a sample's light, in parts of its square, at most 1; 0 where frames are clean or do not tell.
+// Reads the first 33 frames of the sequence that lie on disk, whatever is asked for, so that chunks agree. 0 where they
+// have no motion; nothing where they are fewer, with a gap, broken or of several sizes.
+std::optional<float> noise_of(const FramePattern& pattern, const SequenceFormat& format);
+
 // Reads a recorded frame of the plan. Errors: kIoFailure, naming the file.
 Status read_recorded(const std::string& folder, const ScannedFrame& expected, const ResolvePlan& plan,
                      SequenceFrame& frame);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "bench/traces/controllers.h"
-
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <vector>
 
 #include "bench/harness/measuring.h"
+#include "bench/traces/trace_run.h"
 #include "quincunx/control/predictive_controller.h"
 
 namespace quincunx::traces {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "bench/traces/quality_run.h"
-
 #include <fmt/format.h>
 
 #include <functional>
@@ -8,6 +6,7 @@
 
 #include "bench/harness/measuring.h"
 #include "bench/harness/records.h"
+#include "bench/traces/trace_run.h"
 #include "quincunx/control/predictive_controller.h"
 
 namespace quincunx::traces {

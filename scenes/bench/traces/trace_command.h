@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "bench/traces/load_trace.h"
-#include "bench/traces/quality_run.h"
 #include "bench/traces/trace_run.h"
 #include "quincunx/status.h"
 

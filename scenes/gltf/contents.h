@@ -1,18 +1,63 @@
 // SPDX-License-Identifier: MIT
-// The node tree of a glTF file and its animation, as pure functions of time. Private to the glTF loader.
+// The contents of a glTF file as those of a Scene: materials, meshes, and the node tree with its animation. Private to
+// the glTF loader.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <initializer_list>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gltf/document.h"
+#include "scene.h"
 
 namespace quincunx::scenes {
+
+struct DecodedImage {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgba;  // width * height * 4, top row first, alpha 255 where the file has none
+};
+
+// Decodes PNG or JPEG, as glTF allows (image.cpp). Throws GltfError that names the image.
+DecodedImage decode_image(const GltfDocument& document, int image);
+
+struct GltfMaterials {
+  std::vector<Texture> textures;
+  std::vector<Material> materials;  // as in the file, then one for primitives that name none
+  std::vector<int> uv_sets;         // for each material: which TEXCOORD_n its textures are drawn with
+
+  int default_material() const { return static_cast<int>(materials.size()) - 1; }
+};
+
+// Reads all of them. A vertex has one pair of texture coordinates: the set of the base colour serves all slots of a
+// material, with a warning where another slot asks for a different one. Throws GltfError.
+GltfMaterials read_materials(GltfDocument& document);
+
+// Elements of `components` values each, tightly packed. Integers are normalised to [0, 1] or [-1, 1] where
+// the accessor says so, else converted as they are. All values are finite.
+struct FloatArray {
+  int components = 0;
+  std::vector<float> values;
+
+  std::size_t size() const { return values.size() / static_cast<std::size_t>(components); }
+};
+
+// Reads an accessor. `use` says what for, in messages: "POSITION of primitive 0 of mesh 1 'Suzanne'". Throws GltfError
+// for an accessor that leaves its bufferView, for one whose number of components is not among those allowed, and for
+// values that are not finite.
+FloatArray read_floats(const GltfDocument& document, int accessor, std::initializer_list<int> components,
+                       const std::string& use);
+
+// Reads triangles, strips and fans, indexed or not. Without NORMAL the triangles get flat normals of their
+// own, as glTF demands. Nothing for points and lines, with a warning. Throws GltfError.
+std::optional<Mesh> read_primitive(GltfDocument& document, int mesh, int primitive,
+                                   const GltfMaterials& materials);
 
 enum class Interpolation : std::uint8_t { kStep, kLinear, kCubicSpline };
 
@@ -27,7 +72,7 @@ struct Track {
   glm::vec4 at(double seconds) const;
 };
 
-// Any number of motions may share it, and any thread may ask.
+// The node tree and its motion, a pure function of time. Any number of motions may share it, and any thread may ask.
 class NodeTree {
  public:
   // Takes the first animation of the file; others are named in a warning. Throws GltfError.
