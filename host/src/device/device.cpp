@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
@@ -214,86 +213,6 @@ cl::ImageFormat channel_format(PixelFormat format, bool two_channel_images) {
                                                            : CL_FLOAT)};
 }
 
-Status check_copy(const ImageView& image, Extent extent, const void* texels, std::size_t row_bytes) {
-  if (!image) return Status::invalid("the image is empty; it needs an allocation");
-  if (extent.width < 1 || extent.height < 1 || extent.width > image.extent.width ||
-      extent.height > image.extent.height) {
-    return Status::invalid(fmt::format("extent is {}x{}; it must lie within 1x1 and the image's {}x{}",
-                                       extent.width, extent.height, image.extent.width, image.extent.height));
-  }
-  if (texels == nullptr) {
-    return Status::invalid(fmt::format("texels is null; it must point to {}x{} texels of {}", extent.width,
-                                       extent.height, name_of(image.format)));
-  }
-  const std::size_t row = static_cast<std::size_t>(extent.width) * bytes_per_pixel(image.format);
-  if (row_bytes != 0 && row_bytes < row) {
-    return Status::invalid(
-        fmt::format("row_bytes is {}; it must be 0 or at least the {} of a row", row_bytes, row));
-  }
-  return {};
-}
-
-// Bytes of a texel as the device holds it: an RG image may be a four-channel one.
-std::size_t device_texel_bytes(const ImageView& image) {
-  if (image.storage == Storage::kBuffer) return bytes_per_pixel(image.format);
-  std::size_t bytes = 0;
-  if (clGetImageInfo(image.memory, CL_IMAGE_ELEMENT_SIZE, sizeof(bytes), &bytes, nullptr) != CL_SUCCESS)
-    return 0;
-  return bytes;
-}
-
-enum class Direction { kUpload, kDownload };
-
-void copy_rows(const cl::CommandQueue& queue, Direction direction, const ImageView& image, std::size_t first,
-               std::size_t rows, int width, void* texels, std::size_t row_bytes) {
-  const auto columns = static_cast<std::size_t>(width);
-  if (image.storage == Storage::kImage) {
-    const auto memory = borrow<cl::Image2D>(image.memory);
-    const std::array<cl::size_type, 3> origin = {0, first, 0};
-    const std::array<cl::size_type, 3> region = {columns, rows, 1};
-    if (direction == Direction::kUpload) {
-      queue.enqueueWriteImage(memory, CL_TRUE, origin, region, row_bytes, 0, texels);
-    } else {
-      queue.enqueueReadImage(memory, CL_TRUE, origin, region, row_bytes, 0, texels);
-    }
-    return;
-  }
-  const auto memory = borrow<cl::Buffer>(image.memory);
-  const std::size_t pitch = image.row_pitch();
-  const std::array<cl::size_type, 3> zero = {0, 0, 0};
-  const std::array<cl::size_type, 3> origin = {image.offset % pitch, image.offset / pitch + first, 0};
-  const std::array<cl::size_type, 3> region = {columns * bytes_per_pixel(image.format), rows, 1};
-  if (direction == Direction::kUpload) {
-    queue.enqueueWriteBufferRect(memory, CL_TRUE, origin, zero, region, pitch, 0, row_bytes, 0, texels);
-  } else {
-    queue.enqueueReadBufferRect(memory, CL_TRUE, origin, zero, region, pitch, 0, row_bytes, 0, texels);
-  }
-}
-
-// Rusticl of Mesa 25.0 takes the rows of a copy for tight where there are as many of them as a row has bytes, or texels
-// of an image (docs/testing.md). Two copies of fewer rows each are right everywhere.
-void copy_blocking(const cl::CommandQueue& queue, Direction direction, const ImageView& image, Extent extent,
-                   void* texels, std::size_t row_bytes) {
-  const auto rows = static_cast<std::size_t>(extent.height);
-  const std::size_t unit = image.storage == Storage::kImage ? device_texel_bytes(image) : 1;
-  const std::size_t last = rows > 1 && rows * unit == row_bytes ? 1 : 0;
-  copy_rows(queue, direction, image, 0, rows - last, extent.width, texels, row_bytes);
-  if (last == 0) return;
-  copy_rows(queue, direction, image, rows - 1, 1, extent.width,
-            static_cast<std::byte*>(texels) + (rows - 1) * row_bytes, row_bytes);
-}
-
-// Copies rows of texels of different size: host texels and the wider ones of an image that stands in for RG.
-void repack(const std::byte* from, std::size_t from_row, std::size_t from_texel, std::byte* to,
-            std::size_t to_row, std::size_t to_texel, Extent extent) {
-  const std::size_t common = std::min(from_texel, to_texel);
-  for (int y = 0; y < extent.height; ++y) {
-    for (int x = 0; x < extent.width; ++x) {
-      std::copy_n(from + y * from_row + x * from_texel, common, to + y * to_row + x * to_texel);
-    }
-  }
-}
-
 }  // namespace
 
 bool has_extension(const cl::Device& device, const std::string& extension) {
@@ -450,47 +369,6 @@ Result<Image> Device::allocate(Extent extent, PixelFormat format, Storage storag
     return Image::borrow(view);
   } catch (...) {
     return caught(fmt::format("{}x{} {}", extent.width, extent.height, name_of(format)), impl_->info.name);
-  }
-}
-
-Status Device::upload(const ImageView& image, Extent extent, const void* texels,
-                      std::size_t row_bytes) const {
-  if (Status status = check_copy(image, extent, texels, row_bytes); !status.ok()) return status;
-  const std::size_t texel = bytes_per_pixel(image.format);
-  const std::size_t wide = device_texel_bytes(image);
-  const std::size_t host_row = row_bytes != 0 ? row_bytes : extent.width * texel;
-  try {
-    if (wide == texel) {
-      copy_blocking(impl_->queue, Direction::kUpload, image, extent, const_cast<void*>(texels), host_row);
-    } else {
-      std::vector<std::byte> staged(static_cast<std::size_t>(extent.area()) * wide);
-      repack(static_cast<const std::byte*>(texels), host_row, texel, staged.data(), extent.width * wide, wide,
-             extent);
-      copy_blocking(impl_->queue, Direction::kUpload, image, extent, staged.data(), extent.width * wide);
-    }
-    return {};
-  } catch (...) {
-    return caught("upload", impl_->info.name);
-  }
-}
-
-Status Device::download(const ImageView& image, Extent extent, void* texels, std::size_t row_bytes) const {
-  if (Status status = check_copy(image, extent, texels, row_bytes); !status.ok()) return status;
-  const std::size_t texel = bytes_per_pixel(image.format);
-  const std::size_t wide = device_texel_bytes(image);
-  const std::size_t host_row = row_bytes != 0 ? row_bytes : extent.width * texel;
-  try {
-    if (wide == texel) {
-      copy_blocking(impl_->queue, Direction::kDownload, image, extent, texels, host_row);
-    } else {
-      std::vector<std::byte> staged(static_cast<std::size_t>(extent.area()) * wide);
-      copy_blocking(impl_->queue, Direction::kDownload, image, extent, staged.data(), extent.width * wide);
-      repack(staged.data(), extent.width * wide, wide, static_cast<std::byte*>(texels), host_row, texel,
-             extent);
-    }
-    return {};
-  } catch (...) {
-    return caught("download", impl_->info.name);
   }
 }
 
