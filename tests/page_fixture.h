@@ -8,7 +8,6 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -90,10 +89,7 @@ class PageInBrowser : public ::testing::Test {
     return nlohmann::json::parse(dom.substr(at + mark.size(), dom.find("</pre>", at) - at - mark.size()));
   }
 
-  std::string text_of(const std::string& name) const {
-    std::ifstream file(folder_.file(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
+  std::string text_of(const std::string& name) const { return read_file(folder_.file(name)); }
 
   TemporaryFolder folder_;
 };

@@ -2,19 +2,14 @@
 // The calls that cl_interposer.cpp replaces ask injected_fault() there.
 #include "cl_faults.h"
 
-#include <dlfcn.h>
-
 #include <atomic>
 #include <cstring>
 #include <vector>
 
+#include "real_function.h"
+
 namespace quincunx::gl::testing {
 namespace {
-
-template <auto function>
-auto next(const char* name) {
-  return reinterpret_cast<decltype(function)>(dlsym(RTLD_NEXT, name));
-}
 
 struct LateCopy {
   cl_command_queue queue;
@@ -56,7 +51,7 @@ cl_int injected_fault() {
 }
 
 void let_copies_through() {
-  static const auto set = next<&clSetUserEventStatus>("clSetUserEventStatus");
+  static const auto set = REAL(clSetUserEventStatus);
   for (; g_let_through < g_copies.size(); ++g_let_through)
     set(g_copies[g_let_through].gate, CL_COMPLETE);
 }
@@ -69,7 +64,7 @@ PretendLateCopies::~PretendLateCopies() {
   g_late = false;
   let_copies_through();
   for (const LateCopy& copy : g_copies) {
-    next<&clFinish>("clFinish")(copy.queue);
+    REAL(clFinish)(copy.queue);
     clReleaseEvent(copy.gate);
     clReleaseMemObject(copy.buffer);
   }
@@ -86,8 +81,8 @@ bool PretendLateCopies::copied_what_was_given() const {
   bool right = true;
   for (const LateCopy& copy : g_copies) {
     std::vector<unsigned char> copied(copy.given.size());
-    next<&clEnqueueReadBuffer>("clEnqueueReadBuffer")(copy.queue, copy.buffer, CL_TRUE, copy.offset,
-                                                      copied.size(), copied.data(), 0, nullptr, nullptr);
+    static_cast<void>(REAL(clEnqueueReadBuffer)(copy.queue, copy.buffer, CL_TRUE, copy.offset, copied.size(),
+                                                copied.data(), 0, nullptr, nullptr));
     right = right && copied == copy.given;
   }
   return right;
@@ -102,19 +97,19 @@ using namespace quincunx::gl::testing;
 // its error out through `code`.
 #define FAILS(name, ...)                                                        \
   if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault; \
-  static const auto real = next<&name>(#name);                                  \
+  static const auto real = REAL(name);                                          \
   return real(__VA_ARGS__)
 #define FAILS_TO_WAIT(waits, name, ...)                                         \
   if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault; \
   if (waits) let_copies_through();                                              \
-  static const auto real = next<&name>(#name);                                  \
+  static const auto real = REAL(name);                                          \
   return real(__VA_ARGS__)
 #define FAILS_TO_MAKE(name, ...)                                    \
   if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) { \
     if (code != nullptr) *code = fault;                             \
     return nullptr;                                                 \
   }                                                                 \
-  static const auto real = next<&name>(#name);                      \
+  static const auto real = REAL(name);                              \
   return real(__VA_ARGS__)
 
 extern "C" {
@@ -181,7 +176,7 @@ cl_int CL_API_CALL clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, c
   const auto* bytes = static_cast<const unsigned char*>(from);
   clRetainMemObject(buffer);
   g_copies.push_back({queue, buffer, offset, clCreateUserEvent(context, nullptr), {bytes, bytes + size}});
-  static const auto real = next<&clEnqueueWriteBuffer>("clEnqueueWriteBuffer");
+  static const auto real = REAL(clEnqueueWriteBuffer);
   return real(queue, buffer, blocking, offset, size, from, 1, &g_copies.back().gate, event);
 }
 

@@ -16,6 +16,7 @@
 #include "cl_faults.h"
 #include "external_memory.h"
 #include "gl_semaphores.h"
+#include "real_function.h"
 
 namespace quincunx::gl::testing {
 namespace {
@@ -39,11 +40,6 @@ struct State {
 State& state() {
   static State* const instance = new State;
   return *instance;
-}
-
-template <typename Function>
-Function* next(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
 // The importer: the first device of Vulkan's.
@@ -264,18 +260,14 @@ extern "C" {
 void* CL_API_CALL clGetExtensionFunctionAddressForPlatform(cl_platform_id platform, const char* name) {
   if (state().flaw == PretendImports::Flaw::kNoFunctions) return nullptr;
   void* const own = state().flaw ? function_of(name) : nullptr;
-  return own != nullptr ? own
-                        : next<decltype(clGetExtensionFunctionAddressForPlatform)>(
-                              "clGetExtensionFunctionAddressForPlatform")(platform, name);
+  return own != nullptr ? own : REAL(clGetExtensionFunctionAddressForPlatform)(platform, name);
 }
 
 // A function of OpenCL 3.0: its types are those of cl_ulong here.
 cl_mem CL_API_CALL clCreateBufferWithProperties(cl_context context, const cl_ulong* properties,
                                                 cl_mem_flags flags, std::size_t bytes, void* host,
                                                 cl_int* code) {
-  using Create = cl_mem CL_API_CALL(cl_context, const cl_ulong*, cl_mem_flags, std::size_t, void*, cl_int*);
-  if (!state().flaw)
-    return next<Create>("clCreateBufferWithProperties")(context, properties, flags, bytes, host, code);
+  if (!state().flaw) return REAL(clCreateBufferWithProperties)(context, properties, flags, bytes, host, code);
   *code = injected_fault();
   if (*code == CL_SUCCESS && state().flaw == PretendImports::Flaw::kRefuses) *code = CL_INVALID_VALUE;
   if (*code != CL_SUCCESS) return nullptr;
@@ -285,8 +277,8 @@ cl_mem CL_API_CALL clCreateBufferWithProperties(cl_context context, const cl_ulo
     *code = CL_INVALID_VALUE;
     return nullptr;
   }
-  const cl_mem memory = next<decltype(clCreateBuffer)>("clCreateBuffer")(context, flags | CL_MEM_USE_HOST_PTR,
-                                                                         bytes, imported.mapped, code);
+  const cl_mem memory =
+      REAL(clCreateBuffer)(context, flags | CL_MEM_USE_HOST_PTR, bytes, imported.mapped, code);
   if (memory == nullptr) return nullptr;
   const std::lock_guard lock(state().mutex);
   state().imported[memory] = imported;

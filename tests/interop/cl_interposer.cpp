@@ -3,7 +3,6 @@
 
 #include <CL/cl_ext.h>
 #include <CL/cl_gl.h>
-#include <dlfcn.h>
 #include <epoxy/gl.h>
 
 #include <algorithm>
@@ -18,6 +17,7 @@
 
 #include "cl_faults.h"
 #include "cl_imports.h"
+#include "real_function.h"
 #include "state_scope.h"
 
 namespace quincunx::gl::testing {
@@ -70,11 +70,6 @@ State& state() {
   return *instance;
 }
 
-template <typename Function>
-Function* next(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
-
 struct KnownFormat {
   GLint internal;
   GLenum format;
@@ -125,8 +120,7 @@ cl_mem create_on_buffer(cl_context context, cl_mem_flags flags, const cl_image_f
   cl_image_desc plain = desc;
   plain.buffer = nullptr;
   plain.image_row_pitch = 0;
-  const cl_mem image =
-      next<decltype(clCreateImage)>("clCreateImage")(context, flags, &stand_in, &plain, nullptr, code);
+  const cl_mem image = REAL(clCreateImage)(context, flags, &stand_in, &plain, nullptr, code);
   if (image != nullptr)
     state().on_buffers[image] = {desc.buffer, desc.image_width, desc.image_height, desc.image_row_pitch};
   return image;
@@ -137,10 +131,9 @@ void update_images_on_buffers(cl_command_queue queue) {
     std::vector<std::uint8_t> rows(on.pitch * on.height);
     const std::array<std::size_t, 3> origin = {0, 0, 0};
     const std::array<std::size_t, 3> region = {on.width, on.height, 1};
-    next<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer")(queue, on.buffer, CL_TRUE, 0, rows.size(),
-                                                               rows.data(), 0, nullptr, nullptr);
-    next<decltype(clEnqueueWriteImage)>("clEnqueueWriteImage")(
-        queue, image, CL_TRUE, origin.data(), region.data(), on.pitch, 0, rows.data(), 0, nullptr, nullptr);
+    REAL(clEnqueueReadBuffer)(queue, on.buffer, CL_TRUE, 0, rows.size(), rows.data(), 0, nullptr, nullptr);
+    static_cast<void>(REAL(clEnqueueWriteImage)(queue, image, CL_TRUE, origin.data(), region.data(), on.pitch,
+                                                0, rows.data(), 0, nullptr, nullptr));
   }
 }
 
@@ -168,8 +161,8 @@ cl_int write_image(cl_command_queue queue, cl_mem image, const SharedTexture& sh
   const std::array<std::size_t, 3> origin = {0, 0, 0};
   const std::array<std::size_t, 3> region = {static_cast<std::size_t>(shared.width),
                                              static_cast<std::size_t>(shared.height), 1};
-  return next<decltype(clEnqueueWriteImage)>("clEnqueueWriteImage")(
-      queue, image, CL_TRUE, origin.data(), region.data(), 0, 0, texels, 0, nullptr, nullptr);
+  return REAL(clEnqueueWriteImage)(queue, image, CL_TRUE, origin.data(), region.data(), 0, 0, texels, 0,
+                                   nullptr, nullptr);
 }
 
 cl_int to_opencl(cl_command_queue queue, cl_mem image, const SharedTexture& shared) {
@@ -187,8 +180,8 @@ cl_int to_opengl(cl_command_queue queue, cl_mem image, const SharedTexture& shar
   const std::array<std::size_t, 3> origin = {0, 0, 0};
   const std::array<std::size_t, 3> region = {static_cast<std::size_t>(shared.width),
                                              static_cast<std::size_t>(shared.height), 1};
-  const cl_int code = next<decltype(clEnqueueReadImage)>("clEnqueueReadImage")(
-      queue, image, CL_TRUE, origin.data(), region.data(), 0, 0, texels.data(), 0, nullptr, nullptr);
+  const cl_int code = REAL(clEnqueueReadImage)(queue, image, CL_TRUE, origin.data(), region.data(), 0, 0,
+                                               texels.data(), 0, nullptr, nullptr);
   if (code != CL_SUCCESS) return code;
   if (shared.writable) {
     const PackScope packs;
@@ -294,7 +287,7 @@ static const auto kBrokenDevice = reinterpret_cast<cl_device_id>(&g_broken_place
 extern "C" {
 
 cl_int CL_API_CALL clGetPlatformIDs(cl_uint room, cl_platform_id* to, cl_uint* count) {
-  const auto real = next<decltype(clGetPlatformIDs)>("clGetPlatformIDs");
+  const auto real = REAL(clGetPlatformIDs);
   if (!state().broken) return real(room, to, count);
   if (*state().broken == PretendBrokenDriver::Flaw::kNoPlatforms) return CL_OUT_OF_HOST_MEMORY;
   if (to != nullptr) *to++ = kBrokenPlatform;
@@ -306,13 +299,12 @@ cl_int CL_API_CALL clGetPlatformIDs(cl_uint room, cl_platform_id* to, cl_uint* c
 cl_int CL_API_CALL clGetPlatformInfo(cl_platform_id platform, cl_platform_info name, std::size_t room,
                                      void* value, std::size_t* bytes_ret) {
   if (platform == kBrokenPlatform) return CL_OUT_OF_HOST_MEMORY;
-  return next<decltype(clGetPlatformInfo)>("clGetPlatformInfo")(platform, name, room, value, bytes_ret);
+  return REAL(clGetPlatformInfo)(platform, name, room, value, bytes_ret);
 }
 
 cl_int CL_API_CALL clGetDeviceIDs(cl_platform_id platform, cl_device_type type, cl_uint room,
                                   cl_device_id* to, cl_uint* count) {
-  if (platform != kBrokenPlatform)
-    return next<decltype(clGetDeviceIDs)>("clGetDeviceIDs")(platform, type, room, to, count);
+  if (platform != kBrokenPlatform) return REAL(clGetDeviceIDs)(platform, type, room, to, count);
   if (*state().broken == PretendBrokenDriver::Flaw::kNoDevices) return CL_OUT_OF_HOST_MEMORY;
   if (to != nullptr) *to = kBrokenDevice;
   if (count != nullptr) *count = 1;
@@ -320,16 +312,16 @@ cl_int CL_API_CALL clGetDeviceIDs(cl_platform_id platform, cl_device_type type, 
 }
 
 cl_int CL_API_CALL clRetainDevice(cl_device_id device) {
-  return device == kBrokenDevice ? CL_SUCCESS : next<decltype(clRetainDevice)>("clRetainDevice")(device);
+  return device == kBrokenDevice ? CL_SUCCESS : REAL(clRetainDevice)(device);
 }
 
 cl_int CL_API_CALL clReleaseDevice(cl_device_id device) {
-  return device == kBrokenDevice ? CL_SUCCESS : next<decltype(clReleaseDevice)>("clReleaseDevice")(device);
+  return device == kBrokenDevice ? CL_SUCCESS : REAL(clReleaseDevice)(device);
 }
 
 cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info name, std::size_t room, void* value,
                                    std::size_t* bytes_ret) {
-  const auto real = next<decltype(clGetDeviceInfo)>("clGetDeviceInfo");
+  const auto real = REAL(clGetDeviceInfo);
   if (device == kBrokenDevice) {
     const bool tells = state().broken == PretendBrokenDriver::Flaw::kMuteButForItsKind;
     if (!tells || name != CL_DEVICE_TYPE) return CL_OUT_OF_HOST_MEMORY;
@@ -379,8 +371,8 @@ cl_context CL_API_CALL clCreateContext(
   }
   plain.push_back(0);
   all.push_back(0);
-  const cl_context context = next<decltype(clCreateContext)>("clCreateContext")(
-      with_gl ? plain.data() : properties, count, devices, notify, user, code);
+  const cl_context context =
+      REAL(clCreateContext)(with_gl ? plain.data() : properties, count, devices, notify, user, code);
   if (with_gl) state().properties[context] = all;
   return context;
 }
@@ -392,7 +384,7 @@ cl_int CL_API_CALL clGetContextInfo(cl_context context, cl_context_info name, st
     return copy_out(found->second.data(), found->second.size() * sizeof(cl_context_properties), room, value,
                     bytes_ret);
   }
-  return next<decltype(clGetContextInfo)>("clGetContextInfo")(context, name, room, value, bytes_ret);
+  return REAL(clGetContextInfo)(context, name, room, value, bytes_ret);
 }
 
 cl_mem CL_API_CALL clCreateFromGLTexture(cl_context context, cl_mem_flags flags, cl_GLenum, cl_GLint,
@@ -407,8 +399,7 @@ cl_mem CL_API_CALL clCreateFromGLTexture(cl_context context, cl_mem_flags flags,
   desc.image_type = CL_MEM_OBJECT_IMAGE2D;
   desc.image_width = static_cast<std::size_t>(shared.width);
   desc.image_height = static_cast<std::size_t>(shared.height);
-  const cl_mem image = next<decltype(clCreateImage)>("clCreateImage")(context, CL_MEM_READ_WRITE, &stand_in,
-                                                                      &desc, nullptr, code);
+  const cl_mem image = REAL(clCreateImage)(context, CL_MEM_READ_WRITE, &stand_in, &desc, nullptr, code);
   shared.writable = (flags & CL_MEM_READ_ONLY) == 0;
   if (image != nullptr) state().textures[image] = shared;
   return image;
@@ -422,7 +413,7 @@ cl_int CL_API_CALL clGetImageInfo(cl_mem image, cl_image_info name, std::size_t 
     if (state().flaw == PretendSharing::Flaw::kWrongFormat) reported.image_channel_order = CL_BGRA;
     return copy_out(&reported, sizeof(reported), room, value, bytes_ret);
   }
-  return next<decltype(clGetImageInfo)>("clGetImageInfo")(image, name, room, value, bytes_ret);
+  return REAL(clGetImageInfo)(image, name, room, value, bytes_ret);
 }
 
 cl_int CL_API_CALL clEnqueueAcquireGLObjects(cl_command_queue queue, cl_uint count, const cl_mem* images,
@@ -442,14 +433,14 @@ cl_int CL_API_CALL clReleaseMemObject(cl_mem memory) {
   const auto found = state().textures.find(memory);
   if (found != state().textures.end() && !found->second.acquired) state().textures.erase(found);
   state().on_buffers.erase(memory);
-  return next<decltype(clReleaseMemObject)>("clReleaseMemObject")(memory);
+  return REAL(clReleaseMemObject)(memory);
 }
 
 cl_mem CL_API_CALL clCreateBuffer(cl_context context, cl_mem_flags flags, std::size_t bytes, void* host,
                                   cl_int* code) {
   if (refuses(code)) return nullptr;
   ++state().counts.creations;
-  return next<decltype(clCreateBuffer)>("clCreateBuffer")(context, flags, bytes, host, code);
+  return REAL(clCreateBuffer)(context, flags, bytes, host, code);
 }
 
 cl_mem CL_API_CALL clCreateImage(cl_context context, cl_mem_flags flags, const cl_image_format* format,
@@ -458,21 +449,20 @@ cl_mem CL_API_CALL clCreateImage(cl_context context, cl_mem_flags flags, const c
   ++state().counts.creations;
   if (desc->buffer != nullptr && state().images_on_buffers)
     return create_on_buffer(context, flags, *format, *desc, code);
-  return next<decltype(clCreateImage)>("clCreateImage")(context, flags, format, desc, host, code);
+  return REAL(clCreateImage)(context, flags, format, desc, host, code);
 }
 
 cl_mem CL_API_CALL clCreateSubBuffer(cl_mem buffer, cl_mem_flags flags, cl_buffer_create_type type,
                                      const void* info, cl_int* code) {
   if (refuses(code)) return nullptr;
   ++state().counts.creations;
-  return next<decltype(clCreateSubBuffer)>("clCreateSubBuffer")(buffer, flags, type, info, code);
+  return REAL(clCreateSubBuffer)(buffer, flags, type, info, code);
 }
 
 cl_int CL_API_CALL clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem memory, void* mapped, cl_uint count,
                                            const cl_event* wait, cl_event* event) {
   if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault;
-  const cl_int code = next<decltype(clEnqueueUnmapMemObject)>("clEnqueueUnmapMemObject")(
-      queue, memory, mapped, count, wait, event);
+  const cl_int code = REAL(clEnqueueUnmapMemObject)(queue, memory, mapped, count, wait, event);
   update_images_on_buffers(queue);
   return code;
 }
@@ -483,8 +473,8 @@ cl_int CL_API_CALL clEnqueueWriteBufferRect(cl_command_queue queue, cl_mem buffe
                                             std::size_t host_row, std::size_t host_slice, const void* host,
                                             cl_uint count, const cl_event* wait, cl_event* event) {
   if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault;
-  const cl_int code = next<decltype(clEnqueueWriteBufferRect)>("clEnqueueWriteBufferRect")(
-      queue, buffer, blocking, to, from, region, row, slice, host_row, host_slice, host, count, wait, event);
+  const cl_int code = REAL(clEnqueueWriteBufferRect)(queue, buffer, blocking, to, from, region, row, slice,
+                                                     host_row, host_slice, host, count, wait, event);
   update_images_on_buffers(queue);
   return code;
 }
@@ -493,7 +483,7 @@ cl_int CL_API_CALL clFinish(cl_command_queue queue) {
   if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault;
   let_copies_through();
   ++state().counts.blocking_waits;
-  return next<decltype(clFinish)>("clFinish")(queue);
+  return REAL(clFinish)(queue);
 }
 
 void* CL_API_CALL clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
@@ -502,8 +492,7 @@ void* CL_API_CALL clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_b
   if (refuses(code)) return nullptr;
   ++state().counts.maps;
   if (blocking != CL_FALSE) ++state().counts.blocking_waits;
-  return next<decltype(clEnqueueMapBuffer)>("clEnqueueMapBuffer")(queue, buffer, blocking, flags, offset,
-                                                                  bytes, count, wait, event, code);
+  return REAL(clEnqueueMapBuffer)(queue, buffer, blocking, flags, offset, bytes, count, wait, event, code);
 }
 
 }  // extern "C"

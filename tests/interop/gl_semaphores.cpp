@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gl_semaphores.h"
 
-#include <dlfcn.h>
 #include <epoxy/gl.h>
 #include <poll.h>
 #include <unistd.h>
@@ -10,6 +9,8 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+
+#include "real_function.h"
 
 namespace quincunx::gl::testing {
 namespace {
@@ -111,7 +112,6 @@ void signal_event(int fd) {
 
 extern "C" bool epoxy_has_gl_extension(const char* name) {
   if (quincunx::gl::testing::g_pretends && std::strcmp(name, "GL_EXT_semaphore_fd") == 0) return true;
-  static const auto real =
-      reinterpret_cast<bool (*)(const char*)>(dlsym(RTLD_NEXT, "epoxy_has_gl_extension"));
+  static const auto real = REAL(epoxy_has_gl_extension);
   return real(name);
 }

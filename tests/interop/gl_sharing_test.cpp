@@ -36,25 +36,13 @@ class GlSharingTest : public InteropTest {
     ASSERT_TRUE(bridge.submit(slot).ok());
   }
 
-  // Raw texels of an image; Device::download would ask for the stand-in's own formats.
-  Bytes read_image(const ImageView& view, Extent extent) {
-    Bytes texels(static_cast<std::size_t>(extent.area()) * bytes_per_pixel(view.format));
-    const std::array<std::size_t, 3> origin = {0, 0, 0};
-    const std::array<std::size_t, 3> region = {static_cast<std::size_t>(extent.width),
-                                               static_cast<std::size_t>(extent.height), 1};
-    EXPECT_EQ(clEnqueueReadImage(device_->queue(), view.memory, CL_TRUE, origin.data(), region.data(), 0, 0,
-                                 texels.data(), 0, nullptr, nullptr),
-              CL_SUCCESS);
-    return texels;
-  }
-
   void expect_frame(SharedFrame frame, std::uint32_t seed) {
     for (const Plane& plane : planes_) {
       const ImageView& view = view_of(frame, plane.kind);
       EXPECT_EQ(view.storage, Storage::kImage);
       EXPECT_EQ(view.extent, kTarget);
       const Bytes drawn = random_texels(plane.format, kTarget, seed);
-      EXPECT_TRUE(read_image(view, kRender) == crop(drawn, kTarget, kRender, bytes_per_pixel(plane.format)))
+      EXPECT_TRUE(bytes_in(view, kRender) == crop(drawn, kTarget, kRender, bytes_per_pixel(plane.format)))
           << "plane " << static_cast<int>(plane.kind) << " of frame " << seed;
     }
   }

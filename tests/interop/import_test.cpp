@@ -43,19 +43,6 @@ class ImportTest : public InteropTest, public ::testing::WithParamInterface<Way>
     return bridge.ok() ? std::move(bridge).value() : nullptr;
   }
 
-  // Raw texels; of an image Device::download would ask for the stand-in's own formats.
-  Bytes bytes_in(const ImageView& view, Extent extent) {
-    if (view.storage == Storage::kBuffer) return download(view, extent);
-    Bytes texels(static_cast<std::size_t>(extent.area()) * bytes_per_pixel(view.format));
-    const std::array<std::size_t, 3> origin = {0, 0, 0};
-    const std::array<std::size_t, 3> region = {static_cast<std::size_t>(extent.width),
-                                               static_cast<std::size_t>(extent.height), 1};
-    EXPECT_EQ(clEnqueueReadImage(device_->queue(), view.memory, CL_TRUE, origin.data(), region.data(), 0, 0,
-                                 texels.data(), 0, nullptr, nullptr),
-              CL_SUCCESS);
-    return texels;
-  }
-
   void write_view(const ImageView& view, const Bytes& texels) {
     if (view.storage == Storage::kBuffer) return upload(view, texels);
     const std::array<std::size_t, 3> origin = {0, 0, 0};

@@ -14,6 +14,7 @@
 
 #include "frame_layout.h"
 #include "host_copy.h"
+#include "quincunx/frame.h"
 #include "quincunx_gl/bridge.h"
 #include "quincunx_gl/gl_calls.h"
 
@@ -123,6 +124,14 @@ inline BridgeSettings all_planes(Extent target, Extent output, PixelFormat colou
           .colour = colour};
 }
 
+inline FrameInputs inputs_of(const SharedFrame& frame, Extent render) {
+  return {.colour = frame.colour,
+          .depth = frame.depth,
+          .velocity = frame.velocity,
+          .reactive = frame.reactive,
+          .render_extent = render};
+}
+
 // Whether Vulkan has the device that OpenGL draws on.
 inline bool has_vulkan() {
   try {
@@ -164,6 +173,19 @@ class InteropTest : public ::testing::Test {
     Bytes texels(static_cast<std::size_t>(extent.area()) * bytes_per_pixel(view.format));
     const Status status = device_->download(view, extent, texels.data());
     EXPECT_TRUE(status.ok()) << status.message();
+    return texels;
+  }
+
+  // Raw texels; of an image Device::download would ask for the stand-in's own formats.
+  Bytes bytes_in(const ImageView& view, Extent extent) {
+    if (view.storage == Storage::kBuffer) return download(view, extent);
+    Bytes texels(static_cast<std::size_t>(extent.area()) * bytes_per_pixel(view.format));
+    const std::array<std::size_t, 3> origin = {0, 0, 0};
+    const std::array<std::size_t, 3> region = {static_cast<std::size_t>(extent.width),
+                                               static_cast<std::size_t>(extent.height), 1};
+    EXPECT_EQ(clEnqueueReadImage(device_->queue(), view.memory, CL_TRUE, origin.data(), region.data(), 0, 0,
+                                 texels.data(), 0, nullptr, nullptr),
+              CL_SUCCESS);
     return texels;
   }
 

@@ -258,12 +258,7 @@ class SeparateMemory : public InteropTest {
     EXPECT_TRUE(inputs.ok()) << inputs.status().message();
     const auto presented = bridge.begin_present();
     EXPECT_TRUE(presented.ok()) << presented.status().message();
-    const FrameReport report = service.dispatch({.colour = inputs->colour,
-                                                 .depth = inputs->depth,
-                                                 .velocity = inputs->velocity,
-                                                 .reactive = inputs->reactive,
-                                                 .render_extent = render},
-                                                {.presented = presented.value()});
+    const FrameReport report = service.dispatch(inputs_of(*inputs, render), {.presented = presented.value()});
     EXPECT_TRUE(report.ok()) << report.status.message();
     EXPECT_EQ(report.used_previous, frame > 0);
     EXPECT_TRUE(bridge.present().ok());

@@ -67,8 +67,7 @@ TEST_F(GltfMesh, ByteOrderMarkIsSkipped) {
   GltfFile file;
   file.triangle();
   file.save_gltf(folder_.file("plain.gltf"));
-  std::ifstream stream(folder_.file("plain.gltf"), std::ios::binary);
-  const std::string text = "\xef\xbb\xbf" + std::string(std::istreambuf_iterator<char>(stream), {});
+  const std::string text = "\xef\xbb\xbf" + testing::read_file(folder_.file("plain.gltf"));
   write_bytes(folder_.file("marked.gltf"), text.data(), text.size());
   EXPECT_EQ(loaded(folder_.file("marked.gltf")).meshes.size(), 1u);
 }

@@ -16,16 +16,18 @@
 namespace quincunx {
 namespace {
 
+using testing::c_device;
+using testing::c_service;
 using testing::COwner;
 using testing::HostPicture;
+using testing::sized;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr Extent kOutput{24, 18};
 constexpr Extent kRegion{12, 8};
 
 quincunx_settings good_settings() {
-  quincunx_settings settings = {};
-  settings.struct_size = sizeof(settings);
+  auto settings = sized<quincunx_settings>();
   EXPECT_EQ(quincunx_settings_init(&settings), QUINCUNX_OK);
   settings.output_width = settings.target_width = kOutput.width;
   settings.output_height = settings.target_height = kOutput.height;
@@ -230,12 +232,8 @@ TEST(CBadInput, EachWrongInputIsNamed) {
 
 TEST(CBadInput, ReportsAreChecked) {
   const auto plan = plan_of(good_settings());
-  quincunx_device* device = nullptr;
-  quincunx_service* service = nullptr;
-  ASSERT_EQ(quincunx_device_open("", &device), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_device> device_owner(device);
-  ASSERT_EQ(quincunx_service_create(device, plan.get(), &service), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_service> service_owner(service);
+  const auto device = c_device();
+  const auto service = c_service(device, plan);
   quincunx_content content = {};
   int in_focus[1] = {};
   const Wrong<quincunx_report> table[] = {
@@ -244,10 +242,9 @@ TEST(CBadInput, ReportsAreChecked) {
       {"report.content.struct_size is 0", [&](auto& r) { r.content = &content; }},
   };
   for (const auto& wrong : table) {
-    quincunx_report report = {};
-    report.struct_size = sizeof(report);
+    auto report = sized<quincunx_report>();
     wrong.set(report);
-    EXPECT_EQ(quincunx_next_report(service, &report), QUINCUNX_INVALID_ARGUMENT) << wrong.word;
+    EXPECT_EQ(quincunx_next_report(service.get(), &report), QUINCUNX_INVALID_ARGUMENT) << wrong.word;
     EXPECT_TRUE(names(wrong.word)) << wrong.word << ": " << quincunx_last_error();
   }
   EXPECT_EQ(quincunx_settings_set_method(nullptr, "temporal"), QUINCUNX_INVALID_ARGUMENT);
@@ -277,10 +274,10 @@ TEST(CBadInput, ReportsAreChecked) {
   EXPECT_EQ(quincunx_plan_reads_history(plan.get(), 12, 9, 0, 0), 1);
   EXPECT_EQ(quincunx_plan_reads_history(plan.get(), -1, 9, 0, 0), 0);
   EXPECT_EQ(quincunx_allow_timing_waits(nullptr, 1), QUINCUNX_INVALID_ARGUMENT);
-  EXPECT_EQ(quincunx_allow_timing_waits(service, 1), QUINCUNX_OK);
+  EXPECT_EQ(quincunx_allow_timing_waits(service.get(), 1), QUINCUNX_OK);
   EXPECT_EQ(quincunx_device_profile(nullptr), nullptr);
   EXPECT_EQ(quincunx_device_pass_timer(nullptr), nullptr);
-  EXPECT_NE(std::string(quincunx_device_profile(device)), "");
+  EXPECT_NE(std::string(quincunx_device_profile(device.get())), "");
 }
 
 // Bits that are wrong for most fields.
@@ -327,12 +324,8 @@ TEST(CBadInput, NoCombinationOfSettingsCrashes) {
 // A service is given frames with any numbers wrong and any pointers missing; after each, a good frame is resolved.
 TEST(CBadInput, NoCombinationOfInputsCrashes) {
   const auto plan = plan_of(Everything::settings());
-  quincunx_device* device = nullptr;
-  quincunx_service* service = nullptr;
-  ASSERT_EQ(quincunx_device_open("", &device), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_device> device_owner(device);
-  ASSERT_EQ(quincunx_service_create(device, plan.get(), &service), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_service> service_owner(service);
+  const auto device = c_device();
+  const auto service = c_service(device, plan);
   std::mt19937 random(5);
   int refused = 0;
   constexpr int kRounds = 400;
@@ -373,12 +366,12 @@ TEST(CBadInput, NoCombinationOfInputsCrashes) {
     };
     for (unsigned k = 0; k < 1 + random() % 3; ++k)
       faults[random() % faults.size()]();
-    const quincunx_status status = quincunx_dispatch(service, &all.frame, &all.outputs, nullptr);
+    const quincunx_status status = quincunx_dispatch(service.get(), &all.frame, &all.outputs, nullptr);
     ASSERT_TRUE(is_answer(status)) << status << ": " << quincunx_last_error();
     refused += status != QUINCUNX_OK;
     if (i % 10 != 0) continue;
     Everything good;
-    ASSERT_EQ(quincunx_dispatch(service, &good.frame, &good.outputs, nullptr), QUINCUNX_OK)
+    ASSERT_EQ(quincunx_dispatch(service.get(), &good.frame, &good.outputs, nullptr), QUINCUNX_OK)
         << quincunx_last_error();
   }
   EXPECT_GT(refused, kRounds / 2);
@@ -390,12 +383,8 @@ TEST(CBadInput, ImagesThatAreNotReadAreNotCopied) {
   quincunx_settings settings = good_settings();
   settings.method = QUINCUNX_BILINEAR;
   const auto plan = plan_of(settings);
-  quincunx_device* device = nullptr;
-  quincunx_service* service = nullptr;
-  ASSERT_EQ(quincunx_device_open("", &device), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_device> device_owner(device);
-  ASSERT_EQ(quincunx_service_create(device, plan.get(), &service), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_service> service_owner(service);
+  const auto device = c_device();
+  const auto service = c_service(device, plan);
   Everything all;
   quincunx_image nothing = *all.depth.image();
   nothing.memory = reinterpret_cast<void*>(16);  // no address of this program's
@@ -403,7 +392,7 @@ TEST(CBadInput, ImagesThatAreNotReadAreNotCopied) {
   all.frame.particles = nullptr;
   all.frame.focus = nullptr;
   all.frame.fade = nullptr;
-  EXPECT_EQ(quincunx_dispatch(service, &all.frame, &all.outputs, nullptr), QUINCUNX_OK)
+  EXPECT_EQ(quincunx_dispatch(service.get(), &all.frame, &all.outputs, nullptr), QUINCUNX_OK)
       << quincunx_last_error();
 }
 

@@ -25,9 +25,45 @@ struct CDestroy {
 template <typename Object>
 using COwner = std::unique_ptr<Object, CDestroy>;
 
-inline COwner<quincunx_plan> c_plan(const SceneNeeds& needs, const ResolveSettings& resolve) {
-  quincunx_settings settings = c::to_c({needs, resolve});
+// Returns a struct of the C interface that knows its size; all else is 0.
+template <typename Struct>
+Struct sized() {
+  Struct made = {};
+  made.struct_size = sizeof(made);
+  return made;
+}
+
+inline COwner<quincunx_device> c_device(const char* selector = "") {
+  quincunx_device* device = nullptr;
+  EXPECT_EQ(quincunx_device_open(selector, &device), QUINCUNX_OK) << quincunx_last_error();
+  return COwner<quincunx_device>(device);
+}
+
+inline COwner<quincunx_service> c_service(const COwner<quincunx_device>& device,
+                                          const COwner<quincunx_plan>& plan) {
+  quincunx_service* service = nullptr;
+  EXPECT_EQ(quincunx_service_create(device.get(), plan.get(), &service), QUINCUNX_OK)
+      << quincunx_last_error();
+  return COwner<quincunx_service>(service);
+}
+
+// Returns the inputs of a method that reads colour alone.
+inline quincunx_inputs c_inputs(const quincunx_image* colour, Extent render) {
+  auto inputs = sized<quincunx_inputs>();
+  inputs.colour = colour;
+  inputs.render_width = render.width;
+  inputs.render_height = render.height;
+  return inputs;
+}
+
+inline quincunx_settings c_settings(const c::SceneSettings& of) {
+  quincunx_settings settings = c::to_c(of);
   settings.struct_size = sizeof(settings);
+  return settings;
+}
+
+inline COwner<quincunx_plan> c_plan(const SceneNeeds& needs, const ResolveSettings& resolve) {
+  const quincunx_settings settings = c_settings({needs, resolve});
   quincunx_plan* plan = nullptr;
   EXPECT_EQ(quincunx_plan_create(&settings, &plan), QUINCUNX_OK) << quincunx_last_error();
   return COwner<quincunx_plan>(plan);

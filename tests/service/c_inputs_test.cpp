@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a frame may bring besides its images, over the C interface: particles, focus, fade, exposure, a dynamic output,
 // events. The pictures are those of the C++ interface.
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "c_fixture.h"
+#include "real_function.h"
 #include "service_fixture.h"
 
 namespace {
@@ -24,8 +24,7 @@ extern "C" cl_int clEnqueueReadBufferRect(cl_command_queue queue, cl_mem buffer,
                                           void* memory, cl_uint waits, const cl_event* list,
                                           cl_event* event) {
   if (g_cannot_read) return CL_OUT_OF_RESOURCES;
-  static const auto real =
-      reinterpret_cast<decltype(&clEnqueueReadBufferRect)>(dlsym(RTLD_NEXT, "clEnqueueReadBufferRect"));
+  static const auto real = REAL(clEnqueueReadBufferRect);
   return real(queue, buffer, blocking, origin, to, region, row, slice, host_row, host_slice, memory, waits,
               list, event);
 }
@@ -33,12 +32,16 @@ extern "C" cl_int clEnqueueReadBufferRect(cl_command_queue queue, cl_mem buffer,
 namespace quincunx {
 namespace {
 
+using testing::c_device;
+using testing::c_inputs;
 using testing::c_plan;
+using testing::c_service;
 using testing::COwner;
 using testing::HostFrame;
 using testing::HostPicture;
 using testing::Pixel;
 using testing::random_frame;
+using testing::sized;
 
 constexpr Extent kOutput{48, 36};
 constexpr Extent kTarget{64, 48};
@@ -76,6 +79,25 @@ struct Planes {
     reactive.host.fill<std::uint8_t>(frame.render, frame.reactive);
   }
 
+  FrameInputs upload(const Device& device, const HostFrame& frame, std::size_t turn) {
+    return {.colour = colour.upload(device, frame.render, turn),
+            .depth = depth.upload(device, frame.render, turn),
+            .velocity = velocity.upload(device, frame.render, turn),
+            .reactive = reactive.upload(device, frame.render, turn),
+            .render_extent = frame.render,
+            .jitter = frame.jitter};
+  }
+
+  quincunx_inputs inputs(const HostFrame& frame) {
+    quincunx_inputs made = c_inputs(colour.host.image(), frame.render);
+    made.depth = depth.host.image();
+    made.velocity = velocity.host.image();
+    made.reactive = reactive.host.image();
+    made.jitter_x = frame.jitter.x;
+    made.jitter_y = frame.jitter.y;
+    return made;
+  }
+
   Plane colour, depth, velocity, reactive;
 };
 
@@ -101,12 +123,8 @@ TEST_P(CExtras, FromHostMemoryAreThoseOfCpp) {
   const Image presented = device.allocate(kOutput, PixelFormat::kRGBA8).value();
 
   const auto plan = c_plan({}, settings);
-  quincunx_device* opened = nullptr;
-  ASSERT_EQ(quincunx_device_open("", &opened), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_device> c_device(opened);
-  quincunx_service* made = nullptr;
-  ASSERT_EQ(quincunx_service_create(opened, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_service> service(made);
+  const auto opened = c_device();
+  const auto service = c_service(opened, plan);
   HostPicture c_linear(kOutput, PixelFormat::kRGBA32F), c_presented(kOutput, PixelFormat::kRGBA8);
   const quincunx_outputs outputs = {sizeof(outputs), c_linear.image(), c_presented.image()};
 
@@ -125,25 +143,11 @@ TEST_P(CExtras, FromHostMemoryAreThoseOfCpp) {
     scene.fill(frame);
     exposure.host.fill<float>({1, 1}, [=](int, int) { return brightness; });
 
-    FrameInputs own = {.colour = scene.colour.upload(device, frame.render, turn),
-                       .depth = scene.depth.upload(device, frame.render, turn),
-                       .velocity = scene.velocity.upload(device, frame.render, turn),
-                       .reactive = scene.reactive.upload(device, frame.render, turn),
-                       .render_extent = frame.render,
-                       .jitter = frame.jitter,
-                       .exposure_image = exposure.upload(device, {1, 1}, turn),
-                       .reset = frame.reset,
-                       .frame_index = n};
-    quincunx_inputs inputs = {};
-    inputs.struct_size = sizeof(inputs);
-    inputs.colour = scene.colour.host.image();
-    inputs.depth = scene.depth.host.image();
-    inputs.velocity = scene.velocity.host.image();
-    inputs.reactive = scene.reactive.host.image();
-    inputs.render_width = frame.render.width;
-    inputs.render_height = frame.render.height;
-    inputs.jitter_x = frame.jitter.x;
-    inputs.jitter_y = frame.jitter.y;
+    FrameInputs own = scene.upload(device, frame, turn);
+    own.exposure_image = exposure.upload(device, {1, 1}, turn);
+    own.reset = frame.reset;
+    own.frame_index = n;
+    quincunx_inputs inputs = scene.inputs(frame);
     inputs.exposure_image = exposure.host.image();
     inputs.reset = frame.reset;
     inputs.frame_index = n;
@@ -184,27 +188,14 @@ TEST_P(CExtras, FromHostMemoryAreThoseOfCpp) {
       region.fill(close);
       mask.host.fill<std::uint8_t>(kRegion,
                                    [](int x, int y) { return static_cast<std::uint8_t>(7 * x + y); });
-      own_focus = {.frame = {.colour = region.colour.upload(device, close.render, turn),
-                             .depth = region.depth.upload(device, close.render, turn),
-                             .velocity = region.velocity.upload(device, close.render, turn),
-                             .reactive = region.reactive.upload(device, close.render, turn),
-                             .render_extent = close.render,
-                             .jitter = close.jitter},
+      own_focus = {.frame = region.upload(device, close, turn),
                    .x = 3,
                    .y = 2,
                    .rectangles = {{{5, 4, 20, 12}}},
                    .rectangle_count = 1,
                    .feather = 4,
                    .mask = mask.upload(device, kRegion, turn)};
-      close_inputs.struct_size = sizeof(close_inputs);
-      close_inputs.colour = region.colour.host.image();
-      close_inputs.depth = region.depth.host.image();
-      close_inputs.velocity = region.velocity.host.image();
-      close_inputs.reactive = region.reactive.host.image();
-      close_inputs.render_width = close.render.width;
-      close_inputs.render_height = close.render.height;
-      close_inputs.jitter_x = close.jitter.x;
-      close_inputs.jitter_y = close.jitter.y;
+      close_inputs = region.inputs(close);
       focus = {sizeof(focus), &close_inputs, 3, 2, &rectangle, 1, 4, mask.host.image()};
       inputs.focus = &focus;
     }
@@ -215,13 +206,13 @@ TEST_P(CExtras, FromHostMemoryAreThoseOfCpp) {
     ASSERT_TRUE(report.ok()) << report.status.message();
     quincunx_report c_report = {};
     int in_focus[QUINCUNX_MAX_PASSES] = {};
-    quincunx_content content = {};
-    content.struct_size = sizeof(content);
+    auto content = sized<quincunx_content>();
     c_report.struct_size = sizeof(c_report);
     c_report.pass_capacity = QUINCUNX_MAX_PASSES;
     c_report.in_focus = in_focus;
     c_report.content = &content;
-    ASSERT_EQ(quincunx_dispatch(made, &inputs, &outputs, &c_report), QUINCUNX_OK) << quincunx_last_error();
+    ASSERT_EQ(quincunx_dispatch(service.get(), &inputs, &outputs, &c_report), QUINCUNX_OK)
+        << quincunx_last_error();
     EXPECT_EQ(c_report.focused, report.focused);
     focused += c_report.focused;
     EXPECT_EQ((Extent{c_report.output_width, c_report.output_height}), report.output_extent);
@@ -238,7 +229,7 @@ TEST_P(CExtras, FromHostMemoryAreThoseOfCpp) {
 
     const auto done = expected.next_completed();
     ASSERT_TRUE(done.has_value());
-    ASSERT_EQ(quincunx_next_report(made, &c_report), QUINCUNX_OK) << quincunx_last_error();
+    ASSERT_EQ(quincunx_next_report(service.get(), &c_report), QUINCUNX_OK) << quincunx_last_error();
     ASSERT_EQ(c_report.content_known, done->content.has_value());
     known += c_report.content_known;
     if (!done->content) continue;
@@ -284,9 +275,7 @@ TEST(CSync, EventsInAndOut) {
                                 .target_extent = kOutput,
                                 .colour = PixelFormat::kRGBA32F,
                                 .output = {.present = false}});
-  quincunx_service* made = nullptr;
-  ASSERT_EQ(quincunx_service_create(borrowed, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_service> service(made);
+  const auto service = c_service(owner, plan);
   const Image colour = device.allocate(kOutput, PixelFormat::kRGBA32F).value();
   const Image picture = device.allocate(kOutput, PixelFormat::kRGBA32F).value();
   const auto image = [](const Image& of) {
@@ -295,11 +284,7 @@ TEST(CSync, EventsInAndOut) {
         of.view().memory};
   };
   const quincunx_image in = image(colour), out = image(picture);
-  quincunx_inputs inputs = {};
-  inputs.struct_size = sizeof(inputs);
-  inputs.colour = &in;
-  inputs.render_width = kOutput.width;
-  inputs.render_height = kOutput.height;
+  quincunx_inputs inputs = c_inputs(&in, kOutput);
   const quincunx_outputs outputs = {sizeof(outputs), &out, nullptr};
 
   cl_event gate = clCreateUserEvent(device.context(), nullptr);
@@ -307,7 +292,8 @@ TEST(CSync, EventsInAndOut) {
   void* done = nullptr;
   quincunx_sync sync = {sizeof(sync), waits, 1, 0, &done, nullptr, nullptr, 0, 0};
   inputs.sync = &sync;
-  ASSERT_EQ(quincunx_dispatch(made, &inputs, &outputs, nullptr), QUINCUNX_OK) << quincunx_last_error();
+  ASSERT_EQ(quincunx_dispatch(service.get(), &inputs, &outputs, nullptr), QUINCUNX_OK)
+      << quincunx_last_error();
   auto* end = static_cast<cl_event>(done);
   ASSERT_NE(end, nullptr);
   cl_int state = CL_COMPLETE;
@@ -320,7 +306,7 @@ TEST(CSync, EventsInAndOut) {
 
   const auto refuses = [&](const char* words) {
     done = &sync;  // anything but NULL
-    return quincunx_dispatch(made, &inputs, &outputs, nullptr) == QUINCUNX_INVALID_ARGUMENT &&
+    return quincunx_dispatch(service.get(), &inputs, &outputs, nullptr) == QUINCUNX_INVALID_ARGUMENT &&
            done == nullptr && std::string(quincunx_last_error()).find(words) != std::string::npos;
   };
   waits[0] = nullptr;
@@ -338,42 +324,34 @@ TEST(CMemory, FramesAndPicturesLieInMemoryOfOthers) {
                                 .target_extent = kOutput,
                                 .colour = PixelFormat::kRGBA32F,
                                 .output = {.present = false}});
-  quincunx_device* opened = nullptr;
-  ASSERT_EQ(quincunx_device_open("cpu", &opened), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_device> device(opened);
-  quincunx_service* made = nullptr;
-  ASSERT_EQ(quincunx_service_create(opened, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_service> service(made);
+  const auto device = c_device("cpu");
+  const auto service = c_service(device, plan);
   constexpr std::size_t kFloats = 4 * std::size_t{kOutput.width} * kOutput.height, kBytes = 4 * kFloats;
   struct alignas(4096) Page {
     std::array<float, 1024> floats;
   };
   std::vector<Page> pages((2 * kBytes + sizeof(Page) - 1) / sizeof(Page));  // the frame, then the picture
   float* const texels = pages.front().floats.data();
-  quincunx_external_memory external = {};
-  external.struct_size = sizeof(external);
+  auto external = sized<quincunx_external_memory>();
   external.handle = QUINCUNX_MAPPED;
   external.mapped = texels;
   external.bytes = 2 * kBytes;
   quincunx_memory* imported = nullptr;
-  ASSERT_EQ(quincunx_memory_import(opened, &external, &imported), QUINCUNX_OK) << quincunx_last_error();
+  ASSERT_EQ(quincunx_memory_import(device.get(), &external, &imported), QUINCUNX_OK) << quincunx_last_error();
   COwner<quincunx_memory> memory(imported);
   quincunx_image in = {
       sizeof(quincunx_image),          QUINCUNX_BUFFER, QUINCUNX_RGBA32F, kOutput.width, kOutput.height, 0, 0,
       quincunx_memory_object(imported)};
   quincunx_image out = in;
   out.offset = kBytes;
-  quincunx_inputs inputs = {};
-  inputs.struct_size = sizeof(inputs);
-  inputs.colour = &in;
-  inputs.render_width = kOutput.width;
-  inputs.render_height = kOutput.height;
+  quincunx_inputs inputs = c_inputs(&in, kOutput);
   const quincunx_outputs outputs = {sizeof(outputs), &out, nullptr};
   for (int frame = 1; frame <= 3; ++frame) {
     for (std::size_t i = 0; i < kFloats; ++i)
       texels[i] = static_cast<float>(frame) * static_cast<float>(i % 97);
     ASSERT_EQ(quincunx_memory_acquire(imported), QUINCUNX_OK) << quincunx_last_error();
-    ASSERT_EQ(quincunx_dispatch(made, &inputs, &outputs, nullptr), QUINCUNX_OK) << quincunx_last_error();
+    ASSERT_EQ(quincunx_dispatch(service.get(), &inputs, &outputs, nullptr), QUINCUNX_OK)
+        << quincunx_last_error();
     void* done = nullptr;
     ASSERT_EQ(quincunx_memory_release(imported, &done), QUINCUNX_OK) << quincunx_last_error();
     auto* event = static_cast<cl_event>(done);
@@ -384,7 +362,7 @@ TEST(CMemory, FramesAndPicturesLieInMemoryOfOthers) {
 
   const auto refuses = [&](const quincunx_external_memory& bad, quincunx_status code, const char* words) {
     quincunx_memory* none = imported;
-    return quincunx_memory_import(opened, &bad, &none) == code && none == nullptr &&
+    return quincunx_memory_import(device.get(), &bad, &none) == code && none == nullptr &&
            std::string(quincunx_last_error()).find(words) != std::string::npos;
   };
   quincunx_external_memory bad = external;
@@ -397,13 +375,12 @@ TEST(CMemory, FramesAndPicturesLieInMemoryOfOthers) {
   bad.bytes = 0;
   EXPECT_TRUE(refuses(bad, QUINCUNX_INVALID_ARGUMENT, "bytes is 0")) << quincunx_last_error();
   quincunx_semaphore* semaphore = nullptr;
-  EXPECT_EQ(quincunx_semaphore_import(opened, 0, &semaphore), QUINCUNX_UNSUPPORTED);
+  EXPECT_EQ(quincunx_semaphore_import(device.get(), 0, &semaphore), QUINCUNX_UNSUPPORTED);
   EXPECT_EQ(quincunx_memory_acquire(nullptr), QUINCUNX_INVALID_ARGUMENT);
-  quincunx_sync sync = {};
-  sync.struct_size = sizeof(sync);
+  auto sync = sized<quincunx_sync>();
   sync.wait_semaphore_count = 1;
   inputs.sync = &sync;
-  EXPECT_EQ(quincunx_dispatch(made, &inputs, &outputs, nullptr), QUINCUNX_INVALID_ARGUMENT);
+  EXPECT_EQ(quincunx_dispatch(service.get(), &inputs, &outputs, nullptr), QUINCUNX_INVALID_ARGUMENT);
   EXPECT_STREQ(quincunx_last_error(),
                "sync.wait_semaphore_count is 1; wait_semaphores must point to so many, at least 0");
 }
@@ -414,29 +391,22 @@ TEST(CSync, AFrameWhosePictureIsLostHasNoEvent) {
                                 .target_extent = kOutput,
                                 .colour = PixelFormat::kRGBA32F,
                                 .output = {.present = false}});
-  quincunx_device* opened = nullptr;
-  ASSERT_EQ(quincunx_device_open("", &opened), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_device> device(opened);
-  quincunx_service* made = nullptr;
-  ASSERT_EQ(quincunx_service_create(opened, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
-  const COwner<quincunx_service> service(made);
+  const auto device = c_device();
+  const auto service = c_service(device, plan);
   HostPicture colour(kOutput, PixelFormat::kRGBA32F), picture(kOutput, PixelFormat::kRGBA32F);
   void* done = nullptr;
   quincunx_sync sync = {sizeof(sync), nullptr, 0, 0, &done, nullptr, nullptr, 0, 0};
-  quincunx_inputs inputs = {};
-  inputs.struct_size = sizeof(inputs);
-  inputs.colour = colour.image();
-  inputs.render_width = kOutput.width;
-  inputs.render_height = kOutput.height;
+  quincunx_inputs inputs = c_inputs(colour.image(), kOutput);
   inputs.sync = &sync;
   const quincunx_outputs outputs = {sizeof(outputs), picture.image(), nullptr};
 
   g_cannot_read = true;
-  EXPECT_EQ(quincunx_dispatch(made, &inputs, &outputs, nullptr), QUINCUNX_DEVICE_FAILURE);
+  EXPECT_EQ(quincunx_dispatch(service.get(), &inputs, &outputs, nullptr), QUINCUNX_DEVICE_FAILURE);
   g_cannot_read = false;
   EXPECT_EQ(done, nullptr);
   EXPECT_NE(std::string(quincunx_last_error()).find("download"), std::string::npos) << quincunx_last_error();
-  ASSERT_EQ(quincunx_dispatch(made, &inputs, &outputs, nullptr), QUINCUNX_OK) << quincunx_last_error();
+  ASSERT_EQ(quincunx_dispatch(service.get(), &inputs, &outputs, nullptr), QUINCUNX_OK)
+      << quincunx_last_error();
   ASSERT_NE(done, nullptr);
   clReleaseEvent(static_cast<cl_event>(done));
 }

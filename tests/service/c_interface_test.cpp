@@ -35,12 +35,8 @@ class CRig {
     settings_.velocity = PixelFormat::kRG32F;
     settings_.output.dither = false;
     plan_ = c_plan(needs, settings_);
-    quincunx_device* device = nullptr;
-    EXPECT_EQ(quincunx_device_open(nullptr, &device), QUINCUNX_OK) << quincunx_last_error();
-    device_.reset(device);
-    quincunx_service* service = nullptr;
-    EXPECT_EQ(quincunx_service_create(device, plan_.get(), &service), QUINCUNX_OK) << quincunx_last_error();
-    service_.reset(service);
+    device_ = c_device(nullptr);
+    service_ = c_service(device_, plan_);
     resolved_ = std::make_unique<HostPicture>(output, settings_.output.linear);
     presented_ = std::make_unique<HostPicture>(output, PixelFormat::kRGBA8);
     outputs_ = {sizeof(outputs_), resolved_->image(), presented_->image()};
@@ -56,8 +52,7 @@ class CRig {
     velocity.fill<Vec2>(frame.render, frame.velocity);
     depth.fill<float>(frame.render, frame.depth);
     reactive.fill<std::uint8_t>(frame.render, frame.reactive);
-    quincunx_inputs inputs = {};
-    inputs.struct_size = sizeof(inputs);
+    auto inputs = sized<quincunx_inputs>();
     inputs.colour = colour.image();
     inputs.depth = depth.image();
     inputs.velocity = velocity.image();
@@ -97,11 +92,15 @@ class CRig {
 namespace quincunx {
 namespace {
 
+using testing::c_inputs;
 using testing::c_plan;
+using testing::c_service;
+using testing::c_settings;
 using testing::COwner;
 using testing::CRig;
 using testing::HostFrame;
 using testing::Pixel;
+using testing::sized;
 
 constexpr Extent kOutput{48, 27};
 constexpr Extent kTarget{64, 36};
@@ -164,9 +163,7 @@ TEST(CInterface, BorrowsDeviceAndMemoryObjects) {
                                                    .target_extent = kTarget,
                                                    .targets = {.clear = true},
                                                    .output = {.present = false}});
-  quincunx_service* made = nullptr;
-  ASSERT_EQ(quincunx_service_create(raw, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
-  COwner<quincunx_service> service(made);
+  const auto service = c_service(device, plan);
   const Image colour = own.allocate(kTarget, PixelFormat::kRGBA16F).value();
   const Image resolved = own.allocate(kOutput, PixelFormat::kRGBA32F).value();
   const auto image = [](const Image& of, int format) {
@@ -181,23 +178,19 @@ TEST(CInterface, BorrowsDeviceAndMemoryObjects) {
   };
   const quincunx_image in = image(colour, QUINCUNX_RGBA16F), out = image(resolved, QUINCUNX_RGBA32F);
   const float value[4] = {0.25f, 0.5f, 2, 1};
-  ASSERT_EQ(quincunx_clear(made, &in, 20, 10, value), QUINCUNX_OK) << quincunx_last_error();
+  ASSERT_EQ(quincunx_clear(service.get(), &in, 20, 10, value), QUINCUNX_OK) << quincunx_last_error();
 
-  quincunx_inputs inputs = {};
-  inputs.struct_size = sizeof(inputs);
-  inputs.colour = &in;
-  inputs.render_width = 20;
-  inputs.render_height = 10;
+  quincunx_inputs inputs = c_inputs(&in, {20, 10});
   inputs.frame_index = 77;
   const quincunx_outputs outputs = {sizeof(outputs), &out, nullptr};
   quincunx_pass_report passes[20];
-  quincunx_report report = {};
-  report.struct_size = sizeof(report);
-  ASSERT_EQ(quincunx_dispatch(made, &inputs, &outputs, &report), QUINCUNX_OK) << quincunx_last_error();
+  auto report = sized<quincunx_report>();
+  ASSERT_EQ(quincunx_dispatch(service.get(), &inputs, &outputs, &report), QUINCUNX_OK)
+      << quincunx_last_error();
   EXPECT_EQ(report.frame_index, 77u);
   EXPECT_FLOAT_EQ(report.ratio_x, 20.f / 48);
   EXPECT_EQ(report.non_finite_pixels, -1);
-  ASSERT_EQ(quincunx_finish(made), QUINCUNX_OK);
+  ASSERT_EQ(quincunx_finish(service.get()), QUINCUNX_OK);
   std::vector<Pixel> pixels(static_cast<std::size_t>(kOutput.area()));
   ASSERT_TRUE(own.download(resolved.view(), kOutput, pixels.data()).ok());
   for (const Pixel& pixel : pixels)
@@ -205,13 +198,13 @@ TEST(CInterface, BorrowsDeviceAndMemoryObjects) {
 
   report.passes = passes;
   report.pass_capacity = 20;
-  ASSERT_EQ(quincunx_next_report(made, &report), QUINCUNX_OK);
+  ASSERT_EQ(quincunx_next_report(service.get(), &report), QUINCUNX_OK);
   EXPECT_EQ(report.frame_index, 77u);
   EXPECT_EQ(report.non_finite_pixels, 0);
   ASSERT_EQ(report.pass_count, 1);
   EXPECT_STREQ(passes[0].kernel, "scale_bilinear");
   EXPECT_GT(passes[0].bytes, 0u);
-  EXPECT_EQ(quincunx_next_report(made, &report), QUINCUNX_NOT_READY);
+  EXPECT_EQ(quincunx_next_report(service.get(), &report), QUINCUNX_NOT_READY);
 }
 
 // A refused frame leaves outputs and history as they were.
@@ -242,11 +235,7 @@ TEST(CErrors, ValidateNamesTheField) {
   float texels[4] = {};
   quincunx_image colour = {sizeof(colour), QUINCUNX_HOST, QUINCUNX_RGBA16F, 64, 36, 0, 0, texels};
   quincunx_image picture = {sizeof(picture), QUINCUNX_HOST, QUINCUNX_RGBA32F, 48, 27, 0, 0, texels};
-  quincunx_inputs inputs = {};
-  inputs.struct_size = sizeof(inputs);
-  inputs.colour = &colour;
-  inputs.render_width = 64;
-  inputs.render_height = 36;
+  quincunx_inputs inputs = c_inputs(&colour, {64, 36});
   quincunx_outputs outputs = {sizeof(outputs), &picture, nullptr};
   const auto check = [&] { return quincunx_validate(plan.get(), &inputs, &outputs); };
   ASSERT_EQ(check(), QUINCUNX_OK) << quincunx_last_error();  // and no texel was read
@@ -366,13 +355,8 @@ ResolveSettings other_settings() {
   return settings;
 }
 
-quincunx_settings sized(quincunx_settings settings) {
-  settings.struct_size = sizeof(settings);
-  return settings;
-}
-
 TEST(CSettings, EveryFieldArrives) {
-  const quincunx_settings settings = sized(c::to_c({other_needs(), other_settings()}));
+  const quincunx_settings settings = c_settings({other_needs(), other_settings()});
   const auto back = c::from_c(&settings);
   ASSERT_TRUE(back.ok()) << back.status().message();
   EXPECT_EQ(back->needs, other_needs());
@@ -391,7 +375,7 @@ TEST(CSettings, DefaultsAreThoseOfTheLibrary) {
 }
 
 TEST(CSettings, ANumberThatNamesNothingIsRefused) {
-  quincunx_settings settings = sized(c::to_c({}));
+  quincunx_settings settings = c_settings({});
   settings.method = 99;
   const auto read = c::from_c(&settings);
   ASSERT_FALSE(read.ok());
@@ -444,8 +428,7 @@ TEST(CSettings, NeedsAreThoseOfThePlan) {
                                                                 .output_extent = {64, 36},
                                                                 .target_extent = {64, 36},
                                                                 .blur = {.shutter = 0.5f}});
-  quincunx_needs needs = {};
-  needs.struct_size = sizeof(needs);
+  auto needs = sized<quincunx_needs>();
   ASSERT_EQ(quincunx_plan_needs(plan.get(), &needs), QUINCUNX_OK) << quincunx_last_error();
   EXPECT_EQ(needs.reads_depth, 1);
   EXPECT_EQ(needs.reads_velocity, 0);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Devices whose events lie: clGetEventProfilingInfo is replaced in this executable by one that passes on, or lies.
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 
 #include "device/device_impl.h"
 #include "quincunx/advanced/pass_timer.h"
+#include "real_function.h"
 #include "service_fixture.h"
 
 namespace {
@@ -25,8 +25,7 @@ std::atomic<int> g_asked = 0;
 
 extern "C" cl_int clGetEventProfilingInfo(cl_event event, cl_profiling_info what, size_t size, void* value,
                                           size_t* size_back) {
-  static const auto real =
-      reinterpret_cast<decltype(&clGetEventProfilingInfo)>(dlsym(RTLD_NEXT, "clGetEventProfilingInfo"));
+  static const auto real = REAL(clGetEventProfilingInfo);
   ++g_asked;
   const Lie lie = g_lie;
   if (lie == Lie::kNoAnswer) return CL_PROFILING_INFO_NOT_AVAILABLE;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A steady frame allocates nothing, compiles nothing and never waits for the device. The OpenCL entry points
 // that could do so are replaced in this executable by ones that count and pass on, and so is operator new.
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "real_function.h"
 #include "service_fixture.h"
 
 namespace {
@@ -24,11 +24,6 @@ std::atomic<int> g_enqueue = 0;
 
 void count(std::atomic<int>& counter) {
   if (g_counting) ++counter;
-}
-
-template <typename Function>
-Function next(const char* name) {
-  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
 }
 
 }  // namespace
@@ -55,61 +50,61 @@ extern "C" {
 
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
   count(g_create);
-  static const auto real = next<decltype(&clCreateBuffer)>("clCreateBuffer");
+  static const auto real = REAL(clCreateBuffer);
   return real(context, flags, size, host, error);
 }
 cl_mem clCreateImage(cl_context context, cl_mem_flags flags, const cl_image_format* format,
                      const cl_image_desc* desc, void* host, cl_int* error) {
   count(g_create);
-  static const auto real = next<decltype(&clCreateImage)>("clCreateImage");
+  static const auto real = REAL(clCreateImage);
   return real(context, flags, format, desc, host, error);
 }
 cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* error) {
   count(g_create);
-  static const auto real = next<decltype(&clCreateKernel)>("clCreateKernel");
+  static const auto real = REAL(clCreateKernel);
   return real(program, name, error);
 }
 cl_int clBuildProgram(cl_program program, cl_uint count_of, const cl_device_id* devices, const char* options,
                       void(CL_CALLBACK* notify)(cl_program, void*), void* user) {
   count(g_compile);
-  static const auto real = next<decltype(&clBuildProgram)>("clBuildProgram");
+  static const auto real = REAL(clBuildProgram);
   return real(program, count_of, devices, options, notify, user);
 }
 cl_int clFinish(cl_command_queue queue) {
   count(g_wait);
-  static const auto real = next<decltype(&clFinish)>("clFinish");
+  static const auto real = REAL(clFinish);
   return real(queue);
 }
 cl_int clWaitForEvents(cl_uint count_of, const cl_event* events) {
   count(g_wait);
-  static const auto real = next<decltype(&clWaitForEvents)>("clWaitForEvents");
+  static const auto real = REAL(clWaitForEvents);
   return real(count_of, events);
 }
 cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
                            size_t size, void* memory, cl_uint waits, const cl_event* list, cl_event* event) {
   if (blocking) count(g_wait);
-  static const auto real = next<decltype(&clEnqueueReadBuffer)>("clEnqueueReadBuffer");
+  static const auto real = REAL(clEnqueueReadBuffer);
   return real(queue, buffer, blocking, offset, size, memory, waits, list, event);
 }
 cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
                             size_t size, const void* memory, cl_uint waits, const cl_event* list,
                             cl_event* event) {
   if (blocking) count(g_wait);
-  static const auto real = next<decltype(&clEnqueueWriteBuffer)>("clEnqueueWriteBuffer");
+  static const auto real = REAL(clEnqueueWriteBuffer);
   return real(queue, buffer, blocking, offset, size, memory, waits, list, event);
 }
 void* clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, cl_map_flags flags,
                          size_t offset, size_t size, cl_uint waits, const cl_event* list, cl_event* event,
                          cl_int* error) {
   if (blocking) count(g_wait);
-  static const auto real = next<decltype(&clEnqueueMapBuffer)>("clEnqueueMapBuffer");
+  static const auto real = REAL(clEnqueueMapBuffer);
   return real(queue, buffer, blocking, flags, offset, size, waits, list, event, error);
 }
 cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
                               const size_t* offset, const size_t* global, const size_t* local, cl_uint waits,
                               const cl_event* list, cl_event* event) {
   count(g_enqueue);
-  static const auto real = next<decltype(&clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel");
+  static const auto real = REAL(clEnqueueNDRangeKernel);
   return real(queue, kernel, dimensions, offset, global, local, waits, list, event);
 }
 

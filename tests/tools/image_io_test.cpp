@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <thread>
 
@@ -318,8 +317,7 @@ TEST(Formats, TheSamePixelsMakeTheSameFile) {
   const std::vector<float> rgba(4 * 4, 0.5f);
   const auto bytes_of_file = [&](const std::string& path) {
     EXPECT_TRUE(write_light(path, {2, 2}, rgba).ok());
-    std::ifstream file(path, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(file), {});
+    return testing::read_file(path);
   };
   for (const char* name : {"a.exr", "a.tif", "a.hdr", "a.dpx", "a.png"}) {
     if (!format_of(name)) continue;

@@ -270,8 +270,7 @@ TEST_F(Reading, BadFilesAreOneSentence) {
 TEST_F(Reading, TruncatedFilesAreRefused) {
   const Extent extent{16, 80};
   open({simple_part(extent, {"R", "G"}, ramp(extent.area() * 2, 0))});
-  std::ifstream file(folder_.file("a.exr"), std::ios::binary);
-  const std::string whole{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::string whole = testing::read_file(folder_.file("a.exr"));
   for (std::size_t length = 0; length < whole.size(); length += 1 + length / 20) {
     std::ofstream(folder_.file("cut.exr"), std::ios::binary | std::ios::trunc) << whole.substr(0, length);
     auto reader = ImageReader::open(folder_.file("cut.exr"));
@@ -373,8 +372,7 @@ TEST_F(ExrBlocks, WhatItDoesNotKnowIsLeftToOthers) {
 // The check ends whatever bytes a header holds.
 TEST_F(ExrBlocks, DamagedHeadersDoNoHarm) {
   testing::write_exr_parts(path_, {part_of({40, 30}, "zip", 0)});
-  std::ifstream file(path_, std::ios::binary);
-  const std::string whole(std::istreambuf_iterator<char>(file), {});
+  const std::string whole = testing::read_file(path_);
   for (std::size_t at = 4; at < 400; ++at) {
     for (const char value : {'\0', '\x7f', '\xff'}) {
       std::string bytes = whole;

@@ -4,7 +4,6 @@
 #include <fstream>
 #include <future>
 #include <new>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -20,12 +19,7 @@
 namespace quincunx::tools {
 namespace {
 
-std::string content(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
+using testing::read_file;
 
 TEST(AtomicFile, AppearsOnlyOnCommit) {
   const testing::TemporaryFolder folder;
@@ -35,7 +29,7 @@ TEST(AtomicFile, AppearsOnlyOnCommit) {
   std::ofstream(file->temporary_path()) << "whole";
   EXPECT_FALSE(std::filesystem::exists(path));
   ASSERT_TRUE(file->commit().ok());
-  EXPECT_EQ(content(path), "whole");
+  EXPECT_EQ(read_file(path), "whole");
   EXPECT_EQ(folder.entries(), 1);
 }
 
@@ -50,7 +44,7 @@ TEST(AtomicFile, LeavesNothingWithoutCommit) {
     EXPECT_EQ(folder.entries(), 2);
   }
   EXPECT_EQ(folder.entries(), 1);
-  EXPECT_EQ(content(folder.file("a.txt")), "before");
+  EXPECT_EQ(read_file(folder.file("a.txt")), "before");
 }
 
 // That a killed process leaves such a file behind is tested with quincunx-resolve, in resume_test.cpp.
@@ -96,7 +90,7 @@ TEST(AtomicFile, MakesMissingFolders) {
   const testing::TemporaryFolder folder;
   const std::string path = folder.file("one/two/a.txt");
   ASSERT_TRUE(write_text(path, "x").ok());
-  EXPECT_EQ(content(path), "x");
+  EXPECT_EQ(read_file(path), "x");
 }
 
 TEST(AtomicFile, NamesThePathAndTheReason) {
@@ -114,7 +108,7 @@ TEST(AtomicFile, ANameMayBeAsLongAsTheSystemAllows) {
   const testing::TemporaryFolder folder;
   const std::string longest = folder.file(std::string(255, 'n'));
   ASSERT_TRUE(write_text(longest, "x").ok());
-  EXPECT_EQ(content(longest), "x");
+  EXPECT_EQ(read_file(longest), "x");
   EXPECT_EQ(folder.entries(), 1);
   EXPECT_NE(write_text(folder.file(std::string(256, 'n')), "x").message().find("more than 255 bytes"),
             std::string::npos);
