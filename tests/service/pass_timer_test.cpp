@@ -90,7 +90,7 @@ struct Outcome {
 };
 
 Outcome run_frames(bool allow_waits) {
-  ServiceRig rig({}, Method::kQuincunx, {64, 48}, {64, 48});
+  ServiceRig rig(Device::open().value(), {}, {.method = Method::kQuincunx}, {64, 48}, {64, 48});
   rig.service().allow_timing_waits(allow_waits);
   g_asked = 0;  // while the device was opened they were
   Outcome outcome;

@@ -49,6 +49,13 @@ inline Codes codes_of(const Pixel& light) {
   return codes;
 }
 
+// Shared, because a device keeps the programs that were built on it: PoCL takes longer to look one up than such a
+// small frame does. Never destroyed, as some OpenCL layers are gone before static objects are.
+inline const Device& shared_device() {
+  static const Device* const opened = new Device(Device::open().value());
+  return *opened;
+}
+
 class ServiceRig {
  public:
   ServiceRig(const SceneNeeds& needs, Method method, Extent output, Extent target)
@@ -56,9 +63,9 @@ class ServiceRig {
 
   // Sets the extents and formats of `settings` itself.
   ServiceRig(const SceneNeeds& needs, ResolveSettings settings, Extent output, Extent target)
-      : ServiceRig(Device::open().value(), needs, settings, output, target) {}
+      : ServiceRig(shared_device(), needs, settings, output, target) {}
 
-  // On the device of another rig.
+  // On a device of the test's own.
   ServiceRig(const Device& device, const SceneNeeds& needs, ResolveSettings settings, Extent output,
              Extent target)
       : device_(device) {
