@@ -260,6 +260,15 @@ TEST_F(Refusal, TooLittleMemory) {
 }
 #endif
 
+TEST_F(Refusal, AHomeThatCannotBeWrittenIsNamed) {
+  write_frames(1, 1);
+  const auto result = run_program(folder_, kRun + "-q",
+                                  "env -u POCL_CACHE_DIR -u XDG_CACHE_HOME HOME=/dev/null " QUINCUNX_PROGRAM);
+  if (result.exit_code == 0) GTEST_SKIP() << "a driver needs no folder";
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_NE(result.err.find("cannot write below '/dev/null'"), std::string::npos) << result.err;
+}
+
 TEST_F(Refusal, FoldersThatCannotBeWritten) {
   write_frames(1, 2);
   expect_refused("'{}/f.%04d.exr' --out /proc/none/u.%04d.exr", 1, "/proc/none");

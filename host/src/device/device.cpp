@@ -9,6 +9,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <string_view>
@@ -178,6 +179,20 @@ std::vector<FoundDevice> all_devices() {
   return found;
 }
 
+// Where PoCL would keep its programs, if it cannot.
+std::string unwritable_cache() {
+  std::filesystem::path folder;
+  for (const char* name : {"POCL_CACHE_DIR", "XDG_CACHE_HOME", "HOME"}) {
+    const char* value = std::getenv(name);
+    if (folder.empty() && value != nullptr) folder = value;
+  }
+  std::error_code error;
+  while (folder.has_relative_path() && !std::filesystem::exists(folder, error))
+    folder = folder.parent_path();
+  const bool is_good = std::filesystem::is_directory(folder, error) && ::access(folder.c_str(), W_OK) == 0;
+  return folder.empty() || is_good ? "" : folder.string();
+}
+
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -191,9 +206,14 @@ std::string searched_name(const DeviceInfo& info) {
 Status no_match(const std::string& selector, const std::vector<DeviceInfo>& infos) {
   if (Status status = check_room(); !status.ok()) return status;
   if (infos.empty()) {
-    return Status::unsupported(
-        "no OpenCL device found; install a driver, for example the Debian package pocl-opencl-icd for the "
-        "CPU");
+    const std::string cache = unwritable_cache();
+    return Status::unsupported(fmt::format(
+        "no OpenCL device found; {}",
+        cache.empty()
+            ? "install a driver, for example the Debian package pocl-opencl-icd for the CPU"
+            : fmt::format("PoCL has none where it cannot write below '{}': set XDG_CACHE_HOME or HOME to a "
+                          "folder that can be written",
+                          cache)));
   }
   std::string known;
   for (const DeviceInfo& info : infos) {
