@@ -202,6 +202,54 @@ TEST_F(Formats, CutPicturesAreRefusedBeforeTheFirstFrame) {
   EXPECT_EQ(image(folder_.file("r.0001.png")).pixels, whole.pixels);
 }
 
+template <typename Value>
+std::string bytes_of(const Value& value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+TEST_F(Formats, FloatsOfOtherFormatsAreLinear) {
+  const auto size = static_cast<std::size_t>(kRender.area());
+  const auto expect_even = [&](const std::string& ending, const std::string& bytes) {
+    std::ofstream(folder_.file("f.0001." + ending), std::ios::binary) << bytes;
+    const auto result =
+        resolve(fmt::format("'{{}}/f.%04d.{0}' --out '{{}}/{0}.%04d.exr' -q {1}", ending, kSame));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(image(output(1, ending)).at(3, 2, 0), .25f) << ending;
+  };
+  std::string map = "Pf\n16 12\n-1.0\n", tiff("II*\0\x8\0\0\0\xa\0", 10);
+  const auto add_tag = [&](std::uint16_t tag, std::uint32_t value) {
+    constexpr std::uint16_t kLong = 4;
+    tiff += bytes_of(tag) + bytes_of(kLong) + bytes_of(std::uint32_t{1}) + bytes_of(value);
+  };
+  constexpr std::uint32_t kPixels = 8 + 2 + 10 * 12 + 4;
+  for (const auto& [tag, value] : {std::pair{256, 16u},
+                                   {257, 12u},
+                                   {258, 64u},
+                                   {259, 1u},
+                                   {262, 1u},
+                                   {273, kPixels},
+                                   {277, 1u},
+                                   {278, 12u},
+                                   {279, 12u * 16 * 8},
+                                   {339, 3u}})
+    add_tag(static_cast<std::uint16_t>(tag), value);
+  tiff += bytes_of(std::uint32_t{0});
+  for (std::size_t i = 0; i < size; ++i)
+    map += bytes_of(.25f), tiff += bytes_of(.25);
+  expect_even("pfm", map);
+  expect_even("tif", tiff);
+}
+
+TEST_F(Formats, TurnedPicturesAreRefused) {
+  for (const char* order : {"+Y 12 +X 16", "+X 16 -Y 12"}) {
+    std::ofstream(folder_.file("f.0001.hdr"), std::ios::binary) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n"
+                                                                << order << "\n"
+                                                                << std::string(16 * 12 * 4, '\x7f');
+    expect_refused(fmt::format("'{{}}/f.%04d.hdr' --out '{{}}/o.%04d.exr' -q {}", kSame), 1,
+                   "f.0001.hdr' is stored turned or mirrored (orientation ");
+  }
+}
+
 TEST_F(Formats, SubsampledChannelsAreRefused) {
   tools::ImageHeader header;
   header.parts.emplace_back().display.extent = kRender;

@@ -332,6 +332,9 @@ TEST_F(ExrBlocks, OfEveryCompressionAndSize) {
 
 TEST_F(ExrBlocks, OfTilesAndSeveralParts) {
   expect_told({part_of({70, 45}, "zip", 16)}, "tiles");
+  ExrPart levels = part_of({70, 45}, "zip", 16);
+  levels.mipmaps = true;
+  expect_told({levels}, "mipmaps");
   for (const int tile : {0, 16}) {
     std::vector<ExrPart> parts = {part_of({40, 30}, "zip", tile), part_of({40, 30}, "piz", tile),
                                   part_of({40, 30}, "zip", tile)};

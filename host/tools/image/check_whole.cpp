@@ -71,7 +71,7 @@ class Bytes {
 struct Part {
   std::array<std::int32_t, 4> window = {};  // left, top, right, bottom; the last two within
   std::array<std::uint32_t, 2> tile = {};
-  std::uint8_t levels = 0;  // 0: one; else mipmaps
+  std::uint8_t levels = 0;  // as count_tiles() takes them
   std::uint8_t compression = 0xff;
   std::optional<std::int32_t> blocks;
   bool tiled = false;
@@ -113,16 +113,42 @@ std::int64_t parts_of(std::int64_t length, std::int64_t part) {
   return part > 0 ? (length + part - 1) / part : 0;
 }
 
+// Tiles of all levels: of one, of mipmaps, or of ripmaps. Nothing where the header means none of these.
+std::optional<std::int64_t> count_tiles(const Part& part, std::int64_t width, std::int64_t height) {
+  const int mode = part.levels & 0xf;
+  const bool rounds_up = part.levels >> 4 != 0;
+  const auto halved = [&](std::int64_t length, int times) {
+    return std::max<std::int64_t>((length + (rounds_up ? (std::int64_t{1} << times) - 1 : 0)) >> times, 1);
+  };
+  const auto levels_of = [&](std::int64_t length) {
+    int levels = 1;
+    while (halved(length, levels - 1) > 1)
+      ++levels;
+    return levels;
+  };
+  const auto tiles_at = [&](int across, int down) {
+    return parts_of(halved(width, across), part.tile[0]) * parts_of(halved(height, down), part.tile[1]);
+  };
+  if (mode == 0) return tiles_at(0, 0);
+  if (mode > 2) return std::nullopt;
+  std::int64_t tiles = 0;
+  const int most = levels_of(std::max(width, height));
+  for (int i = 0; i < most; ++i) {
+    for (int j = 0; j < most; ++j) {
+      const bool is_level = mode == 1 ? i == j : i < levels_of(width) && j < levels_of(height);
+      if (is_level) tiles += tiles_at(i, j);
+    }
+  }
+  return tiles;
+}
+
 // Nothing where the header does not tell.
 std::optional<std::int64_t> count_blocks(const Part& part) {
   if (part.blocks) return *part.blocks;
   const std::int64_t width = std::int64_t{part.window[2]} - part.window[0] + 1;
   const std::int64_t height = std::int64_t{part.window[3]} - part.window[1] + 1;
   if (width < 1 || height < 1) return std::nullopt;
-  if (part.tiled) {
-    if (part.levels != 0) return std::nullopt;
-    return parts_of(width, part.tile[0]) * parts_of(height, part.tile[1]);
-  }
+  if (part.tiled) return count_tiles(part, width, height);
   if (part.compression >= kLinesOfBlock.size()) return std::nullopt;
   return parts_of(height, kLinesOfBlock[part.compression]);
 }

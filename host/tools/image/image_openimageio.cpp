@@ -177,6 +177,8 @@ RowFunction converter_to(Base from) {
       return convert<half, To>;
     case TypeDesc::FLOAT:
       return convert<float, To>;
+    case TypeDesc::DOUBLE:
+      return convert<double, To>;
     default:
       return nullptr;
   }
@@ -194,7 +196,14 @@ bool is_code(Base type) {
   return type == TypeDesc::UINT8 || type == TypeDesc::UINT16;
 }
 
-ImagePart describe(const OIIO::ImageSpec& spec, bool is_exr) {
+bool is_light(Base type) {
+  return type == TypeDesc::HALF || type == TypeDesc::FLOAT || type == TypeDesc::DOUBLE;
+}
+
+ImagePart describe(const OIIO::ImageSpec& spec, std::string_view format) {
+  const bool is_exr = format == "openexr";
+  // A PFM is linear, whatever OpenImageIO says of all portable maps.
+  const bool is_pfm = format == "pnm" && is_light(Base(spec.format.basetype));
   ImagePart part;
   part.attributes = attributes_of(spec);
   part.name = spec["oiio:subimagename"].get();
@@ -207,7 +216,8 @@ ImagePart describe(const OIIO::ImageSpec& spec, bool is_exr) {
   part.colour_space = is_code(Base(spec.format.basetype)) ? "sRGB" : "linear";
   if (!is_exr) {  // whose own attributes of these names are another program's remarks
     part.straight_alpha = spec["oiio:UnassociatedAlpha"].get(0) != 0 && spec.alpha_channel >= 0;
-    part.colour_space = spec["oiio:ColorSpace"].get(part.colour_space);
+    if (!is_pfm) part.colour_space = spec["oiio:ColorSpace"].get(part.colour_space);
+    part.orientation = spec["Orientation"].get(1);
   }
   if (const auto* found = spec.find_attribute("chromaticities", kChromaticitiesType))
     part.chromaticities = copied<Chromaticities>(*found);
@@ -215,7 +225,7 @@ ImagePart describe(const OIIO::ImageSpec& spec, bool is_exr) {
     const Base type = Base(spec.channelformat(c).basetype);
     part.channels.push_back({.name = spec.channel_name(c),
                              .stored = type == TypeDesc::HALF ? ChannelType::kHalf : ChannelType::kFloat,
-                             .integer = type != TypeDesc::HALF && type != TypeDesc::FLOAT && !is_code(type)});
+                             .integer = !is_light(type) && !is_code(type)});
   }
   return part;
 }
@@ -391,7 +401,7 @@ class File : public backend::ImageFile {
       if (!input_->seek_subimage(i, 0)) throw std::runtime_error(with_advice(input_->geterror()));
       OIIO::ImageSpec spec = input_->spec();
       if (spec.nchannels == 2 && spec.alpha_channel == 1) spec.channelnames[0] = "Y";
-      header.parts.push_back(describe(spec, is_exr_));
+      header.parts.push_back(describe(spec, input_->format_name()));
       specs_.push_back(std::move(spec));
     }
     if (const auto* views = specs_.front().find_attribute("multiView"); views && is_exr_)

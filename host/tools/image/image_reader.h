@@ -48,6 +48,7 @@ struct ImagePart {
   std::string colour_space = {};  // "linear", "sRGB", "KodakLog", as the file or its format has it
   std::optional<Chromaticities> chromaticities = {};
   bool straight_alpha = false;  // colour is not multiplied by alpha
+  int orientation = 1;          // as TIFF has it; 1: upright, 0: not known
   std::vector<HeaderChannel> channels;
   std::vector<Attribute> attributes = {};
 
@@ -133,9 +134,9 @@ void set_image_threads(int threads);
 // Checks whether a file holds all of its pixels, from its size and its tables of offsets alone. Reads the headers and
 // the tables of all parts, and no pixels: well under a millisecond. JPEG and PNG must end as their formats have it, DPX
 // must have the size that its header says, and TIFF all strips or tiles of its first picture. It accepts other formats,
-// mipmaps of an EXR, and compressions that it does not know. Errors: kIoFailure where blocks (scanlines or tiles) were
-// never written or lie beyond the file's end: a copy or a renderer that was broken off; and for a path that is no file.
-// One sentence that names `path`. Thread-safe. Source: "OpenEXR File Layout", OpenEXR documentation.
+// and compressions that it does not know. Errors: kIoFailure where blocks (scanlines or tiles) were never written or
+// lie beyond the file's end: a copy or a renderer that was broken off; and for a path that is no file. One sentence
+// that names `path`. Thread-safe. Source: "OpenEXR File Layout", OpenEXR documentation.
 Status check_whole(const std::string& path);
 
 }  // namespace quincunx::tools
