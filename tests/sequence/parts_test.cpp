@@ -125,7 +125,12 @@ TEST(Pictures, AreOfOneView) {
       header_of({{"", {"left.R", "left.G", "left.B", "right.R", "right.G", "right.B"}}});
   EXPECT_EQ(red_of(prefixed), "left.R");
   EXPECT_EQ(red_of(prefixed, {.view = "right"}), "right.R");
+  const ImageHeader right_alone = header_of({{"", {"right.R", "right.G", "right.B", "right.Z"}}});
+  EXPECT_EQ(red_of(right_alone), "right.R");
+  EXPECT_EQ(red_of(right_alone, {.view = "right"}), "right.R");
+  EXPECT_EQ(beside(right_alone, {}, {"Z"}), "right.Z");
   // Names of lights are no views.
+  EXPECT_EQ(red_of(header_of({{"beauty", kRgba}, {"light_right", kRgb}})), "beauty.R");
   EXPECT_EQ(red_of(header_of({{"light_left", kRgb}, {"beauty", kRgba}, {"light_right", kRgb}})), "beauty.R");
 }
 

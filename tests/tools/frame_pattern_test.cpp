@@ -86,6 +86,11 @@ TEST(FramePattern, ListsWhatIsOnDisk) {
   EXPECT_EQ(FramePattern::parse(folder.file("") + "//f.#.exr")->frames_on_disk().value(),
             (Frames{1, 3, 12345}));
   EXPECT_EQ(FramePattern::parse(folder.file("none/f.#.exr"))->frames_on_disk().value(), Frames{});
+  const std::string padded = folder.file("g.-0001.exr");
+  std::ofstream(padded) << "other programs count digits without the sign";
+  EXPECT_EQ(FramePattern::parse(folder.file("g.%04d.exr"))->frames_on_disk().status().message(),
+            "output pattern '" + folder.file("g.%04d.exr") + "' leaves out '" + padded +
+                "': it has frame -1 as '" + folder.file("g.-001.exr") + "'; rename it");
   EXPECT_FALSE(FramePattern::parse(folder.file("f.exr"))->frames_on_disk().ok());
   EXPECT_FALSE(FramePattern::parse(folder.file("#/f.exr"))->frames_on_disk().ok());
 }

@@ -164,7 +164,15 @@ Result<std::vector<std::int64_t>> FramePattern::frames_on_disk() const {
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error), end;
        !error && entry != end; entry.increment(error)) {
-    if (const auto number = number_in(folder + entry->path().filename().string())) frames.push_back(*number);
+    const std::string path = folder + entry->path().filename().string();
+    if (const auto number = number_in(path)) {
+      frames.push_back(*number);
+    } else if (path.starts_with(prefix_ + '-')) {  // and a digit too many, as some programs write it
+      const auto positive = number_in(prefix_ + path.substr(prefix_.size() + 1));
+      if (positive && *positive > 0)
+        return bad(fmt::format("leaves out '{}': it has frame {} as '{}'; rename it", path, -*positive,
+                               expand(-*positive)));
+    }
   }
   std::sort(frames.begin(), frames.end());
   for (const std::int64_t number : frames) {

@@ -342,15 +342,20 @@ std::vector<std::string> views_of(const ImageHeader& header) {
                           [&](const std::string& view) { return first->value == AttributeValue(view); });
   }
   if (!views.empty()) return views;
+  bool all_have_one = true;
   for (const ImagePart& part : header.parts) {
     for (const HeaderChannel& channel : part.channels) {
+      bool has_one = false;
       for (const char* view : {"left", "right"}) {
         std::string name = dotted({part.name, layer_of(channel.name)});
-        if (take_out(view, name)) add(view);
+        if (!take_out(view, name)) continue;
+        add(view);
+        has_one = true;
       }
+      all_have_one &= has_one;
     }
   }
-  if (views.size() < 2) views.clear();
+  if (views.size() < 2 && !all_have_one) views.clear();
   return views;
 }
 
