@@ -148,7 +148,10 @@ TEST_F(Input, AttributesThatMeanNothingAreRefused) {
   };
   refused({"quincunx:jitter", std::string("1 2 3")}, "two numbers");
   refused({"quincunx:jitter", Vec2{NAN, 0}}, "two numbers");
-  refused({"quincunx:outputSize", Vec2{0, 20}}, "a width and a height");
+  refused({"quincunx:outputSize", Vec2{0, 20}}, "a width and a height from 1 to 32768");
+  refused({"quincunx:outputSize", Vec2{32769, 20}}, "a width and a height from 1 to 32768");
+  refused({"quincunx:exposure", -1.0f}, "a number from 0 to 1000000");
+  refused({"quincunx:exposure", 2e6f}, "a number from 0 to 1000000");
   refused({"quincunx:reset", std::string("yes")}, "0 or 1");
   refused({"quincunx:near", -1.0f}, "a positive number");
   refused({"quincunx:depthKind", std::string("Linear")}, "linear, device or device-reversed");

@@ -48,6 +48,7 @@ TEST_F(Refusal, WrongUsage) {
   expect_refused("'{}/f.%04d.exr'", 2, "--out");
   expect_refused(kRun + "--no-such-option", 2, "--no-such-option");
   expect_refused(kRun + "--output 640", 2, "WIDTHxHEIGHT");
+  expect_refused(kRun + "--output 32769x1", 2, "--output: '32769x1' is too large; both sides must lie in");
   expect_refused(kRun + "--method magic", 2, "'magic' is none of");
   for (const char* amount : {"-0.1", "1.1", "nan", "much"})
     expect_refused(kRun + "--sharpen " + amount, 2, "--sharpen");
@@ -111,6 +112,7 @@ TEST_F(Refusal, InputsAreNeverOverwritten) {
 TEST_F(Refusal, PathsAreTriedBeforeTheWork) {
   write_frames(1, 2);
   expect_refused(kRun + "--report /proc/none/r", 1, "--report: '/proc/none/r.json' cannot be written");
+  expect_refused(kRun + "--report '{}/'", 1, "/' cannot be written: the path names no file");
   expect_refused("'{}/f.%04d.exr' --out '{}/f.0001.exr/u.%04d.exr'", 1, "--out: '");
 }
 

@@ -173,6 +173,7 @@ TEST(Camera, EqualMatricesAreExactlyNoMotion) {
 TEST(Camera, MatricesThatCannotBeInvertedAreRefused) {
   const Matrix good = looking_along_z(0, -1, -1);
   EXPECT_FALSE(camera_motion(Matrix{}, good, 0.1f));
+  EXPECT_FALSE(camera_motion(Matrix{}, Matrix{}, 0.1f));
   Matrix bad = good;
   bad[0] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(camera_motion(bad, good, 0.1f));

@@ -66,7 +66,7 @@ std::string text_of(const Bounds& bounds, bool whole) {
 // The file that is written for a text of this kind.
 std::filesystem::path path_to_try(const std::string& kind, const std::string& text) {
   if (kind == "FOLDER") return std::filesystem::path(text) / "file";
-  if (kind == "BASE") return text + ".json";
+  if (kind == "BASE") return text.ends_with('/') ? text : text + ".json";
   if (kind != "PATTERN") return text;
   const auto pattern = FramePattern::parse(text);
   return pattern.ok() ? pattern->expand(0) : text;

@@ -164,7 +164,11 @@ std::string parse_extent(const std::string& text, Extent& extent) {
   const auto width = std::from_chars(text.data(), end, extent.width);
   if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
     const auto height = std::from_chars(width.ptr + 1, end, extent.height);
-    if (height.ec == std::errc() && height.ptr == end && extent.width > 0 && extent.height > 0) return {};
+    if (height.ec == std::errc() && height.ptr == end && extent.width > 0 && extent.height > 0) {
+      constexpr int kLargestSide = 32768;  // as plan_for() has it
+      if (std::max(extent.width, extent.height) <= kLargestSide) return {};
+      return fmt::format("'{}' is too large; both sides must lie in [1, {}]", text, kLargestSide);
+    }
   }
   return fmt::format("'{}' is no size; write WIDTHxHEIGHT, for example 1280x720", text);
 }

@@ -17,7 +17,7 @@ template <typename Attributes, typename Visit>
 void each(Attributes& a, Visit&& visit) {
   constexpr const char* kPair = "two numbers";
   constexpr const char* kNumber = "a number";
-  constexpr const char* kSize = "a width and a height";
+  constexpr const char* kSize = "a width and a height from 1 to 32768";
   constexpr const char* kMatrix = "a matrix";
   visit("quincunx:jitter", a.jitter, kPair);
   visit("quincunx:renderSize", a.render, kSize);
@@ -68,7 +68,7 @@ bool read(const AttributeValue& value, Vec2& pair) {
 }
 
 bool read(const AttributeValue& value, Extent& size) {
-  constexpr float kLargest = 1 << 24;
+  constexpr float kLargest = 32768;  // as plan_for() has it
   Vec2 pair;
   if (!read(value, pair) || !(pair.x >= 1 && pair.y >= 1 && pair.x <= kLargest && pair.y <= kLargest))
     return false;
@@ -190,6 +190,11 @@ Result<FrameAttributes> frame_attributes(const std::string& path, const ImageHea
   if (attributes.near_plane && !(*attributes.near_plane > 0) && first.ok())
     first =
         Status::io(fmt::format("'{}' has an attribute 'quincunx:near' that is not a positive number", path));
+  constexpr float kMostExposure = 1e6f;  // as validate() has it
+  if (attributes.exposure && !(*attributes.exposure >= 0 && *attributes.exposure <= kMostExposure) &&
+      first.ok())
+    first = Status::io(fmt::format(
+        "'{}' has an attribute 'quincunx:exposure' that is not a number from 0 to 1000000", path));
   if (!first.ok()) return first;
   return attributes;
 }

@@ -265,10 +265,12 @@ std::optional<CameraSense> camera_sense_named(std::string_view text) {
 
 std::optional<CameraMotion> camera_motion(const Matrix& now, const Matrix& before, float near_plane) {
   CameraMotion motion;  // the identity
-  if (now == before) return motion;
-  if (is_orthographic(now) && is_orthographic(before)) return orthographic_motion(now, before);
+  const bool is_same = now == before;
+  if (is_orthographic(now) && is_orthographic(before))
+    return is_same ? motion : orthographic_motion(now, before);
   const auto world_from_clip = inverse(clip_from_world(now, near_plane));
   if (!world_from_clip) return std::nullopt;
+  if (is_same) return motion;
   const Rows previous = clip_from_world(before, near_plane);
   for (std::size_t row = 0; row < 4; ++row) {
     for (std::size_t column = 0; column < 4; ++column) {
