@@ -247,6 +247,10 @@ class SceneReader {
     if (source.mesh < 0) return;
     const std::string who = described("node", node, source.name);
     if (source.skin >= 0) document_.warn(who + " is skinned; it stands in its bind pose");
+    const auto& of_mesh = model_.meshes[static_cast<std::size_t>(source.mesh)].weights;
+    const std::vector<double>& weights = source.weights.empty() ? of_mesh : source.weights;
+    if (std::any_of(weights.begin(), weights.end(), [](double weight) { return weight != 0; }))
+      document_.warn(who + " has morph weights, which are left out; it keeps its basic shape");
     for (const int mesh : scene_meshes(source.mesh)) {
       if (scene_.instances.size() >= kMaxInstances) {
         throw GltfError(

@@ -23,7 +23,7 @@ using nlohmann::json;
 // fields; each may also have a "name". Of all others the first word tells the kind:
 //   index LIST             integer that points into a list of the file; indices LIST: a list of those
 //   attributes LIST        object of indices
-//   count LOW [HIGH]       integer; number [LOW [HIGH]]: finite; numbers LENGTH [LOW]: a list of those
+//   count LOW [HIGH]       integer; number [LOW [HIGH]]: finite; numbers LENGTH [LOW]: a list of those (0: any length)
 //   choice A B             one of these, integers or strings; string and bool: any
 const char* const kSchema = R"({
   "asset!": {"version!": "string", "minVersion": "string"},
@@ -32,8 +32,8 @@ const char* const kSchema = R"({
   "nodes": ["node", {
     "camera": "index cameras", "children": "indices nodes", "mesh": "index meshes", "skin": "index skins",
     "matrix": "numbers 16", "rotation": "numbers 4", "scale": "numbers 3", "translation": "numbers 3",
-    "extensions": {"KHR_lights_punctual": {"light!": "index lights"}}}],
-  "meshes": ["mesh", {"primitives!": ["primitive", {
+    "weights": "numbers 0", "extensions": {"KHR_lights_punctual": {"light!": "index lights"}}}],
+  "meshes": ["mesh", {"weights": "numbers 0", "primitives!": ["primitive", {
     "attributes!": "attributes accessors", "indices": "index accessors", "material": "index materials",
     "mode": "count 0 6"}]}],
   "accessors": ["accessor", {
@@ -231,8 +231,11 @@ class Checker {
   }
 
   static json numbers(const json& value, const Kind& kind, const std::string& field, const Place& place) {
-    if (!value.is_array() || value.size() != static_cast<std::size_t>(kind.number(0, 0)))
-      refuse(place, field, fmt::format("{}; a list of {} numbers is needed", shown(value), kind.words[0]));
+    const auto length = static_cast<std::size_t>(kind.number(0, 0));
+    if (!value.is_array() || (length > 0 && value.size() != length))
+      refuse(place, field,
+             fmt::format("{}; a list of {}{}numbers is needed", shown(value), length > 0 ? kind.words[0] : "",
+                         length > 0 ? " " : ""));
     json result = json::array();
     for (const json& element : value)
       result.push_back(number(element, kind, 1, field, place));

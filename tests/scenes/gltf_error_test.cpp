@@ -47,6 +47,18 @@ class GltfErrors : public ::testing::Test {
     expect_refused(file, words);
   }
 
+  // What loading says.
+  std::string log_of(const GltfFile& file) const {
+    std::ostringstream log;
+    const auto before = spdlog::default_logger();
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log)));
+    const auto scene = scenes::load_gltf(file.save_gltf(folder_.file("logged.gltf")));
+    spdlog::set_default_logger(before);
+    EXPECT_TRUE(scene.ok()) << scene.status().message();
+    return log.str();
+  }
+
   void expect_refused(const std::string& name, const Bytes& bytes, const Words& words) {
     write_bytes(folder_.file(name), bytes.data(), bytes.size());
     expect_refused(folder_.file(name), words);
@@ -133,18 +145,18 @@ TEST_F(GltfErrors, UnknownExtensionsAreNamed) {
   GltfFile file = good();
   file.root["extensionsUsed"] = {"EXT_mesh_gpu_instancing", "KHR_materials_unlit", "KHR_materials_sheen",
                                  "EXT_mesh_gpu_instancing"};
-  const std::string path = file.save_gltf(folder_.file("sheen.gltf"));
-  std::ostringstream log;
-  const auto before = spdlog::default_logger();
-  spdlog::set_default_logger(
-      std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log)));
-  const auto scene = scenes::load_gltf(path);
-  spdlog::set_default_logger(before);
-  EXPECT_TRUE(scene.ok()) << scene.status().message();
-  const std::string text = log.str();
+  const std::string text = log_of(file);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
   for (const char* name : {"\"EXT_mesh_gpu_instancing\"", "\"KHR_materials_sheen\""})
     EXPECT_NE(text.find(name), std::string::npos) << text;
+}
+
+TEST_F(GltfErrors, MorphWeightsAreNamed) {
+  GltfFile file = good();
+  EXPECT_EQ(log_of(file), "");
+  file.root["nodes"][0]["weights"] = {0.0, 0.5};
+  EXPECT_NE(log_of(file).find("node 0 'Suzanne node' has morph weights, which are left out"),
+            std::string::npos);
 }
 
 TEST_F(GltfErrors, IndicesOutOfRange) {
