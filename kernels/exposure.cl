@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // exposure: what the frame's light is multiplied by to be exposed light, in which a usual scene has a mean of
 // EXPOSED_MEAN. Rules with constants of light (history, sharpening) are made for that, whatever the unit of light.
-//   wanted    1.25 times the caller's factor, where there is one; else EXPOSED_MEAN / mean. The mean is that of luma
+//   wanted    the caller's factor, where there is one; else EXPOSED_MEAN / mean. The mean is that of luma
 //             over 32x16 blocks of up to 8x8 texels (4x4 after a frame with a factor), each at most 256 times the
 //             geometric mean of all: lamps and fireflies do not make all else dark. What is black, negative, infinite
 //             or NaN does not count
@@ -23,7 +23,6 @@
 #include "texel.h"
 
 #define EXPOSED_MEAN 0.16f       // of exposed light: built-in scenes have .13 to .47, and do best at .1 to .3 [S]
-#define EXPOSED_SHARE 1.25f      // exposed light / light that is shown: the built-in scenes are shown at .8
 #define BLOCK_MEAN_MAX 0x1p8f    // of the geometric mean
 #define STEADY_MAX 1.6817928f    // 2^.75: factor by which what is wanted may differ from what there is
 #define EXPOSURE_MAX 0x1p60f     // factor, either way: neither it nor a quotient of two leaves the normal floats [N]
@@ -128,7 +127,7 @@ __kernel void exposure(const ExposureParams params, COLOUR_TEXELS colour, __glob
 
   float wanted = 0.0f;
   if (is_given || count > 0)
-    wanted = clamp(is_given ? EXPOSED_SHARE * given : EXPOSED_MEAN * (float)count / sum, 1.0f / EXPOSURE_MAX,
+    wanted = clamp(is_given ? given : EXPOSED_MEAN * (float)count / sum, 1.0f / EXPOSURE_MAX,
                    EXPOSURE_MAX);
   Exposure found = {1.0f, 1.0f, 1.0f, wanted > 0.0f ? wanted : 1.0f};
   if (before.factor > 0.0f) {

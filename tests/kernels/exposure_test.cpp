@@ -79,7 +79,7 @@ TEST_P(ExposureOfFrames, MatchesTheReference) {
         const double unit = encoded ? 1 : .37;
         const float wanted = run({.render = extent}, pattern(drawn, extent, unit), 0).factor;
         const Exposure made = run({.render = extent}, pattern(drawn, extent, unit), before, {}, wanted);
-        const double expected = reference::exposure_of(frame_, encoded ? .8 : 0, static_cast<double>(before),
+        const double expected = reference::exposure_of(frame_, encoded ? 1 : 0, static_cast<double>(before),
                                                        static_cast<double>(wanted));
         const std::string what =
             fmt::format("{}x{} {} after {}", extent.width, extent.height, testing::name_of(drawn), before);
@@ -97,15 +97,15 @@ TEST_P(ExposureOfFrames, TheCallersFactorCounts) {
   const auto factor = [&](Given given, float before, float wanted_before = 1e9f) {
     return run({.render = {9, 9}}, colour, before, given, wanted_before).factor;
   };
-  EXPECT_EQ(factor({.number = .8f}, 0), 1);
-  EXPECT_EQ(factor({.number = .8f, .image = .25f}, 0), .25f);
-  EXPECT_EQ(factor({.image = 1.6f}, 0), 2);
-  EXPECT_EQ(factor({.number = .8f, .image = -3}, 0), 1);
-  EXPECT_EQ(factor({.number = .8f}, 1.6f), 1.6f) << "less than 3/4 of a stop away";
-  EXPECT_EQ(factor({.number = .8f}, 1.75f, .5f), .875f) << "more than that";
-  EXPECT_EQ(factor({.number = .8f}, 1.75f, 1.75f), 1.75f) << "but not in the frame before";
-  EXPECT_EQ(factor({.number = .8f}, 1.75f, 9), 1.75f) << "or the other way";
-  EXPECT_EQ(factor({.number = 3.2f}, 1), 4);
+  EXPECT_EQ(factor({.number = 1}, 0), 1);
+  EXPECT_EQ(factor({.number = 1, .image = .25f}, 0), .25f);
+  EXPECT_EQ(factor({.image = 2}, 0), 2);
+  EXPECT_EQ(factor({.number = 1, .image = -3}, 0), 1);
+  EXPECT_EQ(factor({.number = 1}, 1.6f), 1.6f) << "less than 3/4 of a stop away";
+  EXPECT_EQ(factor({.number = 1}, 1.75f, .5f), .875f) << "more than that";
+  EXPECT_EQ(factor({.number = 1}, 1.75f, 1.75f), 1.75f) << "but not in the frame before";
+  EXPECT_EQ(factor({.number = 1}, 1.75f, 9), 1.75f) << "or the other way";
+  EXPECT_EQ(factor({.number = 4}, 1), 4);
 }
 
 TEST_P(ExposureOfFrames, ADarkFrameKeepsThatBefore) {

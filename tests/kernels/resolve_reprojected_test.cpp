@@ -92,7 +92,7 @@ class Reprojected : public ::testing::TestWithParam<Variant>, protected testing:
     const Counter counter = rig.counter();
     FrameReport report;
     FrameInputs inputs = current.inputs;
-    inputs.exposure = .8f;  // with which exposed light is light as it is
+    inputs.exposure = 1;  // with which exposed light is light as it is
     chain.run(chain.frame(inputs, &previous.inputs, {.linear = view}, counter), {.linear = view}, report,
               nullptr);
     Resolved run{rig.bytes(view, output), {}, rig.count(counter)};

@@ -13,7 +13,6 @@ namespace {
 constexpr int kColumns = 32, kRows = 16;
 constexpr int kTexelsMax = 8;         // of a block on each axis; half of them after a frame with a factor
 constexpr double kExposedMean = .16;  // found by search on the built-in scenes
-constexpr double kExposedShare = 1.25;
 constexpr double kBlockMeanMax = 256;
 constexpr double kSteadyOctaves = .75;
 constexpr double kBrightest = 65504 - 0x1p-8;  // the largest float below the largest half
@@ -54,7 +53,7 @@ double mean_light(const Frame& frame, int part) {
 double exposure_of(const Frame& frame, double given, double before, double wanted_before) {
   const double mean = given > 0 ? 0 : mean_light(frame, before > 0 ? 2 : 1);
   if (given <= 0 && mean == 0) return before > 0 ? before : 1;
-  const double wanted = std::clamp(given > 0 ? kExposedShare * given : kExposedMean / mean, 0x1p-60, 0x1p60);
+  const double wanted = std::clamp(given > 0 ? given : kExposedMean / mean, 0x1p-60, 0x1p60);
   if (before <= 0) return wanted;
   const double octaves = std::log2(wanted / before), octaves_before = std::log2(wanted_before / before);
   const bool is_steady = std::min(std::abs(octaves), std::abs(octaves_before)) <= kSteadyOctaves;

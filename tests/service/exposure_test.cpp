@@ -147,7 +147,7 @@ Case usual_temporal() {
 }
 
 TEST(ServiceExposure, OneThatJumpsForAFrameLeavesNoTrace) {
-  std::vector<float> exposures(kFrames, .8f);
+  std::vector<float> exposures(kFrames, 1);
   const std::vector<Pixel> steady = last_picture(usual_temporal(), 1, exposures);
   exposures[kFrames - 3] *= 4;
   EXPECT_EQ(last_picture(usual_temporal(), 1, exposures), steady);
@@ -157,9 +157,9 @@ TEST(ServiceExposure, OneThatJumpsForAFrameLeavesNoTrace) {
 
 // History follows it: the scene has not changed.
 TEST(ServiceExposure, OneThatRisesForGoodIsFollowed) {
-  std::vector<float> exposures(kFrames, .8f);
+  std::vector<float> exposures(kFrames, 1);
   const std::vector<Pixel> steady = last_picture(usual_temporal(), 1, exposures);
-  std::fill(exposures.begin() + 2, exposures.end(), 3.2f);
+  std::fill(exposures.begin() + 2, exposures.end(), 4);
   const std::vector<Pixel> followed = last_picture(usual_temporal(), 1, exposures);
   EXPECT_NE(followed, steady);
   EXPECT_LT(difference_of(followed, steady), .05);

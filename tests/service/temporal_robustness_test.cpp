@@ -168,7 +168,7 @@ TemporalScene scene_of(const Fault& fault) {
   TemporalScene scene = moving_scene(fault.velocity);
   scene.surfaces[0].texture = smooth_texture();
   scene.surfaces[0].turn = fault.turn;
-  scene.exposure = .8f;  // exposed light is light as it is: a block of 5 is far too bright
+  scene.exposure = 1;  // exposed light is light as it is: a block of 5 is far too bright
   return scene;
 }
 

@@ -230,7 +230,6 @@ class ExposurePass : public Pass {
   ExposurePass(const PassSetup& setup, const PassSpec& spec) : Pass(setup, spec), image_(setup) {}
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    constexpr float kOfTheScreen = .8f;  // makes a factor of 1
     const Extent render = frame.inputs.render_extent;
     const ExposureParams params{
         .width = render.width,
@@ -238,7 +237,7 @@ class ExposurePass : public Pass {
         .texels_x = std::clamp(render.width / kExposureColumns, 1, int{kExposureTexels}),
         .texels_y = std::clamp(render.height / kExposureRows, 1, int{kExposureTexels}),
         .colour = layout_of(frame[Resource::kColour]),
-        .given = facts().is_display_referred() ? kOfTheScreen : frame.inputs.exposure,
+        .given = facts().is_display_referred() ? 1 : frame.inputs.exposure,
         .follows = facts().accumulates() ? 1 : 0};
     bind(frame, params, Resource::kColour, image_.of(frame, facts()), Resource::kPreviousExposure,
          Resource::kExposure);
