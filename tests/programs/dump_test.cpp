@@ -166,7 +166,8 @@ TEST_F(Dump, ADynamicOutputIsShownAsItIsMadeAndAsItIsSeen) {
 // In a still scene the picture of frame n is the history that frame n + 1 reads, but for its smoothing of what is
 // hardly known and the rounding of history to halves.
 TEST_F(Dump, TheHistoryOfTemporalIsWhatWasAccumulated) {
-  const std::string run = "-q --scene still --output 64x36 --scale 0.5 --method temporal --format exr ";
+  const std::string run =  // history is exposed light: by 1
+      "-q --scene still --output 64x36 --scale 0.5 --method temporal --exposure 1 --format exr ";
   expect_done(dump(run + "--frame 15 --warm-up 15 --stages resolved --out '{}/d'"));
   expect_done(dump(run + "--frame 16 --warm-up 16 --stages history --out '{}/d'"));
   const auto history = image("d/frame.0016.history.exr");

@@ -45,8 +45,7 @@ TEST(TwoWay, AHistoryThatIsKeptAndShownIsThePictureOfDispatch) {
     KeptHistory kept;
     for (int index = 0; index < (refined ? 1 : 4); ++index) {
       FrameInputs inputs = rig.upload(frame_of(scene, index));
-      inputs.exposure =
-          .8f;  // exposed by a power of two, so that pictures are divided by it without rounding
+      inputs.exposure = 1;  // exposed by a power of two, so that pictures are divided by it without rounding
       ASSERT_TRUE(rig.dispatch(inputs).ok());
       const std::vector<Pixel> expected = rig.resolved();
       const FrameReport added = TwoWay::add(created.value(), inputs, false, &kept);
