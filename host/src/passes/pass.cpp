@@ -95,7 +95,12 @@ void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const c
 }
 
 void Pass::launch_group(const PassFrame& frame, cl::Event* event) {
-  const cl::NDRange group(static_cast<std::size_t>(shape_.group_width * shape_.group_height));
+  // PoCL 6 crashes in groups of one or two work-items, whose barriers it takes out.
+  constexpr std::size_t kLeast = 32;
+  std::size_t most = 1;
+  clGetKernelWorkGroupInfo(kernel_(), nullptr, CL_KERNEL_WORK_GROUP_SIZE, sizeof(most), &most, nullptr);
+  const auto wanted = static_cast<std::size_t>(shape_.group_width * shape_.group_height);
+  const cl::NDRange group(std::max(wanted, std::min(kLeast, most)));
   frame.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, group, group, nullptr, event);
 }
 
