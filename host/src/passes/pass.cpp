@@ -24,16 +24,26 @@ std::string options_of(const PassSpec& spec, const Device::Impl& device) {
   return fmt::format("{} -cl-nv-maxrregcount={}", spec.options, spec.registers);
 }
 
+std::size_t max_items(const cl::Kernel& kernel, const Device::Impl& device) {
+  return kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.device);
+}
+
+// PoCL 6 with LLVM 19 crashes in kernel `exposure` where the group is of one work-item.
+constexpr std::size_t kLeastItemsOfOneGroup = 32;
+
 }  // namespace
 
 Pass::Pass(const PassSetup& setup, const PassSpec& spec)
     : facts_(setup.facts),
       spec_(spec),
       kernel_(build_kernel(setup.device, spec.kernel, options_of(spec, setup.device))),
-      shape_(with_smaller_group(setup.device.profile.shape_of(spec.kernel),
-                                kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(setup.device.device))),
+      shape_(
+          with_smaller_group(setup.device.profile.shape_of(spec.kernel), max_items(kernel_, setup.device))),
       items_at_once_(setup.device.info.compute_units *
-                     (setup.device.lanes == 1 ? kItemsOfGpuUnit : kItemsOfCpuUnit)) {
+                     (setup.device.lanes == 1 ? kItemsOfGpuUnit : kItemsOfCpuUnit)),
+      items_of_one_group_(std::clamp(static_cast<std::size_t>(shape_.group_width * shape_.group_height),
+                                     std::min(kLeastItemsOfOneGroup, max_items(kernel_, setup.device)),
+                                     max_items(kernel_, setup.device))) {
   for (const Use& use : spec_.uses)
     uses_[index_of(use.resource)] = true;
   stand_ins_[0] = setup.tables.stand_in(Storage::kBuffer);
@@ -95,12 +105,7 @@ void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const c
 }
 
 void Pass::launch_group(const PassFrame& frame, cl::Event* event) {
-  // PoCL 6 crashes in groups of one or two work-items, whose barriers it takes out.
-  constexpr std::size_t kLeast = 32;
-  std::size_t most = 1;
-  clGetKernelWorkGroupInfo(kernel_(), nullptr, CL_KERNEL_WORK_GROUP_SIZE, sizeof(most), &most, nullptr);
-  const auto wanted = static_cast<std::size_t>(shape_.group_width * shape_.group_height);
-  const cl::NDRange group(std::max(wanted, std::min(kLeast, most)));
+  const cl::NDRange group(items_of_one_group_);
   frame.queue.enqueueNDRangeKernel(kernel_, cl::NullRange, group, group, nullptr, event);
 }
 

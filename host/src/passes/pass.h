@@ -148,6 +148,7 @@ class Pass {
   cl::Kernel kernel_;
   WorkShape shape_;
   int items_at_once_;
+  std::size_t items_of_one_group_;  // of launch_group()
 };
 
 // A pass's `make`.
