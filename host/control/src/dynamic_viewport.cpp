@@ -25,7 +25,6 @@ DynamicViewport::DynamicViewport(Extent output, Extent target, int step, Extent 
     : output_(output), target_(target), min_extent_(min_extent), render_(output), step_(step) {}
 
 Result<DynamicViewport> DynamicViewport::create(Extent output, float max_scale, int step, Extent min_extent) {
-  constexpr int kLargestSide = 32768;
   Ranges ranges;
   ranges.sides_of("output", output, kLargestSide);
   ranges.lies_in("max_scale", max_scale, 1, 2);

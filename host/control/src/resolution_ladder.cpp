@@ -12,7 +12,6 @@
 namespace quincunx {
 namespace {
 
-constexpr int kLargestOutput = 32768;
 constexpr double kMaxScale = 2;
 
 struct Range {
@@ -90,7 +89,7 @@ class Walk {
 
 Status check(const LadderSettings& settings) {
   Ranges ranges;
-  ranges.sides_of("output_extent", settings.output_extent, kLargestOutput);
+  ranges.sides_of("output_extent", settings.output_extent, kLargestSide);
   if (!ranges.status().ok()) return ranges.status();
   if (!(settings.min_scale > 0 && settings.min_scale <= kMaxScale)) {
     return Status::invalid(
@@ -100,9 +99,9 @@ Status check(const LadderSettings& settings) {
     return Status::invalid(fmt::format("max_scale is {}; it must lie in [{}, {}], the first being min_scale",
                                        settings.max_scale, settings.min_scale, kMaxScale));
   }
-  if (settings.step < 1 || settings.step > kLargestOutput) {
+  if (settings.step < 1 || settings.step > kLargestSide) {
     return Status::invalid(
-        fmt::format("step is {}; it must lie in [1, {}] pixels", settings.step, kLargestOutput));
+        fmt::format("step is {}; it must lie in [1, {}] pixels", settings.step, kLargestSide));
   }
   ranges.sides_of("min_extent", settings.min_extent);
   return ranges.status();

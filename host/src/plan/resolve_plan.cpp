@@ -13,7 +13,6 @@
 namespace quincunx {
 namespace {
 
-constexpr int kLargestSide = 32768;
 // Kernels count the channels of an image's texels, four at most, in `int`.
 constexpr std::int64_t kMostTexels = std::int64_t{1} << 29;
 // The keys of records (kernels/include/layers/records.h) count samples in 28 bits.

@@ -165,7 +165,6 @@ std::string parse_extent(const std::string& text, Extent& extent) {
   if (width.ec == std::errc() && width.ptr != end && *width.ptr == 'x') {
     const auto height = std::from_chars(width.ptr + 1, end, extent.height);
     if (height.ec == std::errc() && height.ptr == end && extent.width > 0 && extent.height > 0) {
-      constexpr int kLargestSide = 32768;  // as plan_for() has it
       if (std::max(extent.width, extent.height) <= kLargestSide) return {};
       return fmt::format("'{}' is too large; both sides must lie in [1, {}]", text, kLargestSide);
     }

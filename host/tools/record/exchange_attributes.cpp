@@ -68,7 +68,7 @@ bool read(const AttributeValue& value, Vec2& pair) {
 }
 
 bool read(const AttributeValue& value, Extent& size) {
-  constexpr float kLargest = 32768;  // as plan_for() has it
+  constexpr auto kLargest = static_cast<float>(kLargestSide);
   Vec2 pair;
   if (!read(value, pair) || !(pair.x >= 1 && pair.y >= 1 && pair.x <= kLargest && pair.y <= kLargest))
     return false;

@@ -262,8 +262,7 @@ void add_picture_options(CommandLine& line, ResolveOptions& options) {
       .common();
   line.add("--exposure", number(options.exposure, {.least = 0, .most = 1e9, .beyond = true}, "FACTOR"),
            "Makes of light what is displayed; temporal takes scenes to be as bright as it says (default: "
-           "attribute "
-           "quincunx:exposure, else 1, and temporal measures them)");
+           "attribute quincunx:exposure, else 1, and temporal measures them)");
   add_resolve_options(line, options.resolve,
                       {.usual = "what the frames offer decides",
                        .settled = [&options] { return options.method_named; },

@@ -17,8 +17,6 @@
 namespace quincunx::tools {
 namespace {
 
-constexpr int kLargestSide = 32768;  // as plan_for() has it
-
 bool exists(const std::string& path) {
   std::error_code error;
   return std::filesystem::exists(path, error) || error;  // or the folder does not tell: opening it says why

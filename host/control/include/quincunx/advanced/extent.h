@@ -6,6 +6,8 @@
 
 namespace quincunx {
 
+inline constexpr int kLargestSide = 32768;  // pixels, of a viewport or an output
+
 // Width and height in pixels.
 struct Extent {
   int width = 0;
