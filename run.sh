@@ -23,7 +23,7 @@ say "Drawing once more by three methods, and truth: out/why.png (half a minute).
 build/release/bin/quincunx-render -q --why out/why.png
 say
 say "Done in $((SECONDS - started)) s. Look at:"
-say "  out/why.png             why: half the resolution by three methods, beside truth; what each takes and errs here"
+say "  out/why.png             half the resolution by three methods, beside truth, with the time and error of each"
 say "  out/contact_sheet.png   the whole run at a glance"
 say "  out/report.txt          what each pass cost, and which devices did the work (report.json: every frame)"
 say "  out/frame.0000.png ...  the frames; one more as .exr with colour, depth and velocity"

@@ -21,7 +21,7 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-bench --traces --out report                 controllers; open report/traces.html
   quincunx-bench --resize --scenes pan                 cost of another resolution
   quincunx-bench --parts --scenes courtyard            scales of picture, shadow map and particles
-  quincunx-bench --tune                                the best cut of each pass, used from then on
+  quincunx-bench --tune                                best shape of each pass, used from then on
   quincunx-bench --front front.json                    errors and costs for --controller quality
 Exit status: 0 done, 1 failed or something got worse (--compare), 2 wrong usage.)";
 
@@ -38,8 +38,7 @@ void add_choice_options(CommandLine& line, BenchOptions& options) {
            "focus/ (with --focus)")
       .common();
   line.add("--list-methods", flag(options.list_methods), "List the methods").tells();
-  line.add("--list-scenes", flag(options.list_scenes), "List the built-in scenes and why they are there")
-      .tells();
+  line.add("--list-scenes", flag(options.list_scenes), "List the built-in scenes and their purpose").tells();
   line.add("--output", extent(options.output), "Size of the picture").common();
   line.add("--quick", flag(options.quick),
            "In two minutes: --output 320x180 --scenes courtyard,wires,occluders --scales 0.5,0.71,1 --frames "
@@ -58,7 +57,7 @@ void add_choice_options(CommandLine& line, BenchOptions& options) {
            "Frames as noisy as a path tracer's with so many samples a pixel (default: no noise)");
   line.add(
       "--focus", text(options.focus, "OBJECT|X,Y,W,H"),
-      "Tell errors in this part of the picture and outside of it apart; methods focus/NAME draw it again");
+      "Also measure errors inside and outside of this part of the picture; methods focus/NAME draw it again");
   line.add("--focus-scale", number(options.focus_scale, {.least = 0.02, .most = 2}, "S"),
            "Render scale of that part")
       .needs({"--focus"});
@@ -66,7 +65,7 @@ void add_choice_options(CommandLine& line, BenchOptions& options) {
            "Frames a second of scene time");
   line.add("--start", number(options.start, {.least = -1e6, .most = 1e6}, "SECONDS"),
            "Scene time of the first frame");
-  line.add("--seed", number(options.seed), "Seed of a scene's chance; same seed, same pixels");
+  line.add("--seed", number(options.seed), "Seed of random parts of scenes; same seed, same pixels");
 }
 
 void add_result_options(CommandLine& line, BenchOptions& options) {
@@ -95,10 +94,10 @@ void add_modes(CommandLine& line, BenchOptions& options) {
            "Cost of another resolution, and frames with viewport and with placed targets")
       .excludes({"--traces", "--compare", "--from"}, "each is a measurement of its own");
   line.add("--parts", flag(options.parts_bench.wanted),
-           "Cost and sight of the scale of the picture, of its shadow map and of its particles")
+           "Cost and error of the scales of the picture, the shadow map and the particles")
       .excludes({"--traces", "--resize", "--compare", "--from"}, "each is a measurement of its own");
   line.add("--tune", flag(options.tune.wanted),
-           "How each pass is best cut into work-items on this device; used from then on")
+           "Find the best shape of each pass on this device; used from then on")
       .common()
       .excludes({"--traces", "--resize", "--parts", "--compare", "--from"},
                 "each is a measurement of its own");
@@ -146,15 +145,13 @@ void add_modes(CommandLine& line, BenchOptions& options) {
            "Part of recorded costs that does not scale")
       .needs({"--recorded"});
   line.add("--quality", flag(traces.quality),
-           "A scripted picture and the passes of each method besides: the quality controller beside "
-           "predictive")
+           "Compare the quality controller with predictive, by scripted pictures and times of passes")
       .needs({"--traces"})
       .excludes({"--recorded", "--every-display"});
   line.add("--budgets", number(traces.budgets, {.least = 0.1, .most = 10}, "B,..."),
            "Multiples of the time that frames are written for")
       .needs({"--quality"});
-  line.add("--untimed", flag(traces.untimed), "The time of the passes is not known apart")
-      .needs({"--quality"});
+  line.add("--untimed", flag(traces.untimed), "Give the controllers no times of passes").needs({"--quality"});
 }
 
 void apply_quick(const CommandLine& app, BenchOptions& options) {

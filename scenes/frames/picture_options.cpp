@@ -45,7 +45,7 @@ void add_part(tools::CommandLine& line, const std::string& name, const std::stri
                [part](const std::string& text) {
                  return tools::number(part().budget_ms, {.least = 0.001, .most = kLongestBudget}).take(text);
                }),
-           "Milliseconds of OpenGL's work a frame (default: a tenth of a frame of --fps)")
+           "Milliseconds of a frame that OpenGL may take for it (default: a tenth of a frame of --fps)")
       .needs({scale})
       .counts_if([part] { return part().automatic; }, scale + " auto; nothing holds it else");
 }
@@ -113,8 +113,7 @@ void add_picture_options(tools::CommandLine& line, PictureOptions& options,
                        [&options](const std::string& text) { return read_scene(text, options.scene); }),
            "Built-in scene, or a .gltf or .glb file (default: the first of --list-scenes)")
       .common();
-  line.add("--list-scenes", tools::flag(options.list_scenes),
-           "List the built-in scenes and why they are there")
+  line.add("--list-scenes", tools::flag(options.list_scenes), "List the built-in scenes and their purpose")
       .common()
       .tells();
   line.add("--frames", tools::number(options.frames, {.least = 1, .most = 1e15}), "Number of frames")
@@ -124,7 +123,7 @@ void add_picture_options(tools::CommandLine& line, PictureOptions& options,
   line.add("--start", tools::number(options.start, {.least = -1e6, .most = 1e6}, "SECONDS"),
            "Scene time of the first frame");
   line.add("--seed", tools::number(options.seed),
-           "Seed of a scene's or a scale path's chance; same seed, same pixels");
+           "Seed of random parts of scenes and scale paths; same seed, same pixels");
   line.add("--exposure", tools::number(options.exposure, {.least = 0, .most = 1e9, .beyond = true}, "FACTOR"),
            "Multiplies linear colour (default: the scene's)");
   line.group("Picture");
@@ -144,9 +143,10 @@ void add_picture_options(tools::CommandLine& line, PictureOptions& options,
            "as it is drawn)");
   line.add("--shading", tools::choice(options.resolve.targets.shading),
            "Pixels that a frame shades: full (default) or checkerboard, every other one");
-  add_part(line, "shadow", "Side of the shadow map's part in use, of the whole (default: 1)",
+  add_part(line, "shadow", "Used part of the shadow map's side (default: 1)",
            [&options]() -> PartOption& { return options.parts.shadow; });
-  add_part(line, "particle", "Scale of particles in a viewport of their own, of the frame's (default: none)",
+  add_part(line, "particle",
+           "Scale of the particles' own viewport, as a part of the frame's (default: none of their own)",
            [&options]() -> PartOption& {
              if (!options.parts.particles) options.parts.particles.emplace();
              return *options.parts.particles;
@@ -187,7 +187,7 @@ void add_machine_options(tools::CommandLine& line, PictureOptions& options) {
   line.group("Device");
   line.add("--interop", tools::choice(options.interop, kInterops), "How frames pass from OpenGL to OpenCL");
   line.add("--gl", tools::choice(options.api, kApis),
-           "What draws: OpenGL 4.5 (default), or es3, OpenGL ES 3.1 or later");
+           "API to draw with: 4.5 (default), OpenGL; es3, OpenGL ES 3.1 or later");
   line.add("--egl-platform", tools::choice(options.platform, kPlatforms), "Where OpenGL comes from");
   tools::add_log_options(line, options.quiet, options.verbosity);
 }

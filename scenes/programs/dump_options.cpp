@@ -33,9 +33,9 @@ void add_stage_options(tools::CommandLine& line, DumpOptions& options) {
       .common()
       .writes();
   line.add("--frame", tools::number(options.frame, {.least = 0, .most = 1e15}),
-           "Which frame of the run (default: 0)")
+           "Frame of the run to show (default: 0)")
       .common();
-  line.add("--stages", stages, "Which stages (default: all that there are)").common();
+  line.add("--stages", stages, "Stages to write (default: all that the run has)").common();
   line.add("--format",
            tools::choice(
                kFormats,

@@ -80,27 +80,27 @@ void add_pacing_options(tools::CommandLine& line, PacingOptions& options) {
            "Highest scale that a controller may choose");
   line.add("--ladder", tools::choice(options.order, kOrders), "Order in which a controller changes the axes");
   line.add("--calibrate", tools::text(options.calibrate, "FILE"),
-           "Instead: measure what frames cost at some resolutions for --calibration, then what each method "
-           "errs and costs in this scene, for --controller quality")
+           "Instead: measure the cost of frames at some resolutions, for --calibration, and the error and "
+           "cost of each method in this scene, for --controller quality")
       .writes()
       .excludes(
           {"--target-fps", "--out", "--contact-sheet", "--exr-frame", "--report", "--json", "--frames"});
   line.add("--truth-seconds", tools::number(options.truth_seconds, {.least = 0, .most = 3600}, "SECONDS"),
-           "Longest that truth may take then; beyond it errors are against the best method")
+           "Longest time for truth then; if it takes longer, errors are against the best method")
       .needs({"--calibrate"});
-  line.add("--calibration", tools::text(options.calibration, "FILE"), "What --calibrate wrote")
+  line.add("--calibration", tools::text(options.calibration, "FILE"), "File that --calibrate wrote")
       .needs({"--target-fps"})
       .counts_if(predicts, kPredicting);
   line.add("--follow-cpu", tools::call([&options] { options.cpu_bound = CpuBound::kFollow; }),
-           "Where the processor takes longer than the target, its time is the target")
+           "If the CPU takes longer than the target, its time becomes the target")
       .needs({"--target-fps"})
       .counts_if(predicts, kPredicting);
   line.add("--blur-aware", tools::flag(options.blur_aware),
-           "The longer the streaks of the camera's motion, the lower the highest resolution")
+           "Lower the highest resolution as the camera's motion blur gets longer")
       .needs({"--target-fps"})
       .counts_if(predicts, kPredicting);
   line.add("--detail-follows", tools::flag(options.detail_follows),
-           "Where the resolution is low, leave out small surfaces and draw moving shadows less often")
+           "At low resolutions, leave out small surfaces and draw moving shadows less often")
       .needs({"--target-fps"});
   line.add("--buffers", tools::number(options.buffers, {.least = 2, .most = 8}), "Buffers of the display")
       .needs({"--target-fps"});
@@ -155,7 +155,7 @@ void add_run_options(tools::CommandLine& line, RenderOptions& options) {
       .common()
       .tells();
   line.add("--truth", tools::number(options.truth, kSamples),
-           "Supersampled truth instead, at the output's size: N x N samples a pixel, box")
+           "Draw supersampled truth instead, at the output's size: N x N samples a pixel, averaged")
       .excludes({"Control",         "--method",    "--view",           "--sharpen",      "--blur",
                  "--jitter",        "--colour",    "--score",          "--report",       "--json",
                  "--contact-sheet", "--exr-frame", "--scale",          "--scale-path",   "--dual",

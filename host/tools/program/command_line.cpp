@@ -162,8 +162,7 @@ CommandLine::CommandLine(std::string description, std::string program, std::stri
   Setting shell = {.value = "SHELL"};
   shell.words = {"bash", "zsh", "fish"};
   group("Help");
-  add("-h,--help", Setting{.value = "[GROUP]"}, "Print what matters first, or the options of a group")
-      .common();
+  add("-h,--help", Setting{.value = "[GROUP]"}, "Print the main options, or those of a group").common();
   add("--help-all", call([] {}), "Print every option").common();
   add("--completion", shell, "Print the completions for a shell");
   add("--version", call([] {}), "Print name and version");

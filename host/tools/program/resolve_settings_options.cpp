@@ -104,23 +104,22 @@ void add_resolve_options(CommandLine& line, ResolveSettings& settings, const Met
            "Samples a pixel at most: 4, 8 (default), 16, 32 or 64")
       .needs({"--blur"});
   line.add("--sky-motion", field("conventions.sky_motion"),
-           "How an infinitely far sample of velocity 0 moves: as-drawn (default: not at all), camera or "
-           "evidence")
+           "Motion of the sky where its velocity is 0: as-drawn (default: none), camera or evidence")
       .counts_if(where([](Settings s) { return uses_earlier_frames(s.method) || s.blur.shutter > 0; }),
                  "--method quincunx or temporal, or --blur");
   line.add("--velocity-weight", field("quincunx.velocity_weight", {.least = 0, .most = 1e6}, "K"),
-           "quincunx:velocity and :point: how fast motion takes the previous frame away")
+           "quincunx:velocity and :point: how much motion lowers the previous frame's weight")
       .counts_if(where([](Settings s) {
                    return s.method == Method::kQuincunx && s.quincunx.form == TwoFrameForm::kVelocity;
                  }),
                  "--method quincunx or quincunx:point");
   line.add("--residual-weight", field("quincunx.residual_weight", {.least = 0, .most = 1e6}, "K"),
-           "quincunx:reprojected: how fast a change of motion does; 0 looks at none")
+           "quincunx:reprojected: the same for a difference between both frames' motions; 0: none")
       .counts_if(where([](Settings s) {
                    return s.method == Method::kQuincunx && s.quincunx.form == TwoFrameForm::kReprojected;
                  }),
                  "--method quincunx:reprojected");
-  line.add("--view", field("temporal.view"), "Show how temporal decides, or the picture")
+  line.add("--view", field("temporal.view"), "Show how temporal decides, in place of the picture")
       .counts_if(where([](Settings s) { return s.method == Method::kTemporal; }), "--method temporal");
   line.add("--no-clamp-ringing", field("filter.clamp_ringing"),
            "Let catmull-rom, mitchell and lanczos overshoot at edges")
@@ -133,10 +132,9 @@ void add_resolve_options(CommandLine& line, ResolveSettings& settings, const Met
       .counts_if(
           where([](Settings s) { return s.method == Method::kNoise || s.method == Method::kNoiseOffset; }),
           "--method noise or noise-offset");
-  line.add("--check-motion", field("checks_motion"),
-           "Say whether velocity points where samples come from, or would with another sign");
+  line.add("--check-motion", field("checks_motion"), "Check the signs of velocity, and report wrong ones");
   line.group("Picture");
-  line.add("--tone-map", field("output.tone_map"), "How light becomes a picture of 8 bits");
+  line.add("--tone-map", field("output.tone_map"), "Tone map of 8-bit pictures");
   line.add("--no-dither", field("output.dither"), "Round to 8 bits without dither");
 }
 
@@ -148,8 +146,8 @@ void add_device_options(CommandLine& line, std::string& device, bool& lists) {
 
 void add_log_options(CommandLine& line, bool& quiet, int& verbosity) {
   line.group("Help");
-  line.add("-q,--quiet", flag(quiet), "Say nothing but errors").excludes({"--verbose"});
-  line.add("-v,--verbose", count(verbosity), "Say more; twice: everything").repeats();
+  line.add("-q,--quiet", flag(quiet), "Print only errors").excludes({"--verbose"});
+  line.add("-v,--verbose", count(verbosity), "Print more; twice: everything").repeats();
 }
 
 std::string resolve_settings_text(const ResolveSettings& settings) {

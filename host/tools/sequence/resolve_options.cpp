@@ -147,7 +147,7 @@ void add_frame_options(CommandLine& line, ResolveOptions& options) {
       .tells()
       .excludes({"--explain", "--diagnose"});
   line.add("--diagnose", flag(options.diagnose),
-           "Only say what is wrong with motion, jitter, depth and camera, by up to 16 frames")
+           "Only check motion, jitter, depth and camera, by up to 16 frames")
       .common()
       .excludes({"--explain"});
 }
@@ -208,18 +208,18 @@ void add_channel_options(CommandLine& line, ResolveOptions& options) {
                 [&input](const std::string& x, const std::string& y) {
                   return set_velocity_scale(input, x, y);
                 }),
-           "Or: what makes motion current - previous in parts of the image, y down")
+           "Or: factors that make motion current - previous, in parts of the image, y down")
       .excludes({"--velocity-convention"})
       .counts_if(has_channels, kMotion);
   line.add("--velocity-offset",
            text("X,Y", [&input](const std::string& text) { return set_velocity_offset(input, text); }),
-           "Values of motion's channels at rest, or one for both: .5 where 0 to 1 were made of them "
+           "Values of motion's channels at rest, or one for both: .5 if they were packed into 0 to 1 "
            "(default: 0)")
       .counts_if(has_channels, kMotion);
   line.add("--velocity-jittered", flag(input.velocity_jittered), "The jitter is in the motion")
       .counts_if(has_channels, kMotion);
   line.add("--drawn-velocity", choice(options.resolve.conventions.drawn_velocity),
-           "Whose motion a pixel has: its own surface's, or dilated, that of the nearest of its 3x3 "
+           "Motion of a pixel: own, that of its surface, or dilated, that of the nearest of its 3x3 "
            "(default: own)")
       .counts_if(has_channels, kMotion);
   line.add("--depth", channel(input.depth), "Depth's channel, or none (default: Z, if any)").common();
@@ -231,7 +231,7 @@ void add_channel_options(CommandLine& line, ResolveOptions& options) {
                 [&input](const std::string& zero, const std::string& one) {
                   return set_depth_range(input, zero, one);
                 }),
-           "What depth's values of 0 and 1 stand for: 0,-1 turns its sign, 31,1 undoes white for near "
+           "Depths that the values 0 and 1 stand for: 0,-1 flips the sign, 31,1 undoes white for near "
            "(default: 0,1)")
       .counts_if(has_depth, "depth, not with --depth none");
   line.add("--near", number(input.near_plane, {.least = 1e-9, .most = 1e9}, "D"),
@@ -246,9 +246,10 @@ void add_channel_options(CommandLine& line, ResolveOptions& options) {
   line.add(
       "--world-to-ndc", sense,
       "Attribute worldToNDC is: screen (-1 to 1, up) or openexr (0 to 1, down), for row vectors; ,flipped: "
-      "y the other way; ,transposed (default: as it shows)");
+      "y the other way; ,transposed (default: detected)");
   line.add("--reactive", channel(input.reactive),
-           "Channel that is 1 where history lies, or none, or a pattern of images (default: reactive.mask)");
+           "Channel that is 1 where history is wrong, as under glass, or none, or a pattern of images "
+           "(default: reactive.mask)");
   line.add("--jitter", text(options.jitter, "NAME|FILE"),
            "attribute, none, quincunx, quincunx-half, halton or a file of FRAME X Y (default: the attribute, "
            "if any)")
@@ -261,10 +262,10 @@ void add_picture_options(CommandLine& line, ResolveOptions& options) {
            "Size of the picture (default: attribute quincunx:outputSize)")
       .common();
   line.add("--exposure", number(options.exposure, {.least = 0, .most = 1e9, .beyond = true}, "FACTOR"),
-           "Makes of light what is displayed; temporal takes scenes to be as bright as it says (default: "
-           "attribute quincunx:exposure, else 1, and temporal measures them)");
+           "Multiplies linear colour before the tone map, and tells temporal how bright the light is "
+           "(default: attribute quincunx:exposure, else 1, and temporal measures the light)");
   add_resolve_options(line, options.resolve,
-                      {.usual = "what the frames offer decides",
+                      {.usual = "by what the frames offer",
                        .settled = [&options] { return options.method_named; },
                        .named = &options.method_named});
   const auto is_temporal = [&options] {
@@ -272,8 +273,8 @@ void add_picture_options(CommandLine& line, ResolveOptions& options) {
   };
   line.group("Method");
   line.add("--two-way", number(options.sequence.two_way, {.least = 0, .most = 64}, "K"),
-           "Each frame knows so many later ones, too; 0: none (default: 8 where --velocity-next or the "
-           "camera tells motion to the next frame, else 0)")
+           "Use so many later frames for each frame, too; 0: none (default: 8 if --velocity-next or the "
+           "camera gives the motion to the next frame, else 0)")
       .counts_if([&options, is_temporal] { return is_temporal() || options.sequence.two_way == 0; },
                  "--method temporal");
   line.add("--memory",
@@ -283,9 +284,8 @@ void add_picture_options(CommandLine& line, ResolveOptions& options) {
       .counts_if([&options] { return options.sequence.two_way.value_or(1) > 0; }, "--two-way above 0");
   line.add("--noise",
            text("SPP|auto", [&options](const std::string& text) { return read_noise(text, options); }),
-           "Denoise: a path tracer took so many samples a pixel; auto: as Cycles says in the first frame, if "
-           "at most 64, "
-           "else as frames show (default: not)")
+           "Denoise frames that a path tracer made with so many samples a pixel; auto: the number that "
+           "Cycles wrote in the first frame, if at most 64, else estimated (default: off)")
       .counts_if(is_temporal, "--method temporal");
 }
 
@@ -303,9 +303,9 @@ void add_output_options(CommandLine& line, ResolveOptions& options) {
       .common()
       .writes();
   line.add("--store", choice(options.stored, kTypes),
-           "Numbers of an EXR: half (default, or as recorded) or float")
+           "Number type in EXRs: half (default, or as recorded) or float")
       .counts_if(is_exr, "an --out of .exr");
-  line.add("--resume", flag(options.resume), "Leave frames out that are there already").needs({"--out"});
+  line.add("--resume", flag(options.resume), "Skip frames that exist already").needs({"--out"});
   line.add("--truth", text(options.truth, "PATTERN"), "True pictures to score the frames against");
   line.add("--truth-colour,--truth-color", text(options.truth_colour, "LAYER"),
            "Layer of the true pictures, as --colour has it")
