@@ -2,9 +2,9 @@
 // Bridge: carries frames that GL drew to OpenCL, and the picture that OpenCL made back to GL.
 //
 // Two backends stand behind one interface. GlSharing hands the textures themselves over (cl_khr_gl_sharing), after a
-// probe has moved a 16x16 texture of every format both ways byte for byte. HostCopy reads just the viewport's rectangle
-// into persistently mapped pixel buffers that OpenCL uses as host memory. A ring of slots lets frame n + 1 be drawn
-// while n is resolved and n - 1 is still read as history.
+// probe has moved a 16x16 texture of every format both ways, byte for byte. HostCopy copies the viewport's rectangle
+// into buffers: persistently mapped ones that OpenCL uses as host memory, or memory of Vulkan's that both import. A
+// ring of slots lets frame n + 1 be drawn while n is resolved and n - 1 is still read as history.
 //
 // The life of a frame in slot s:
 //   begin_draw(s, render), draw, submit(s)
@@ -12,8 +12,8 @@
 //   present(), then presented_pixels() or presented_texture()
 // Where a renderer has textures of its own (BridgeSettings::imports):
 //   draw, import(textures, render), service.dispatch(...), present(texture)
-// All calls come from the thread where the GL context is current. Each puts back the state of GL that it changes, and
-// leaves GL's errors of before to the caller.
+// All calls come from the thread where the GL context is current. Each restores the GL state that it changes, and
+// leaves earlier GL errors to the caller.
 #pragma once
 
 #include <cstdint>
@@ -36,16 +36,16 @@ enum class Interop { kAuto, kGl, kExternal, kCopy };
 QUINCUNX_API const char* name_of(Interop interop);  // "gl", "external", "copy", "auto"
 
 struct BridgeSettings {
-  Interop interop = Interop::kAuto;  // the others insist: create() fails where the backend cannot work
+  Interop interop = Interop::kAuto;  // with the others create() fails if that backend cannot work
   Extent target_extent = {};         // size of the inputs
   Extent output_extent = {};         // size of the presented picture
   bool depth = false;                // hand depth over
   bool velocity = false;             // draw and hand over velocity
   bool reactive = false;             // draw and hand over reactive values
   bool checkerboard = false;         // targets have the stencil of TargetNeeds::checkerboard
-  bool imports = false;              // frames come from textures of the caller's; the bridge makes no targets
-  // Calls put back the state that they change, which they ask OpenGL for: some fifteen values a frame. false: they ask
-  // nothing, and leave that state as a new context has it, for a caller who sets what he needs anew.
+  bool imports = false;              // frames come from the caller's textures; the bridge makes no targets
+  // Calls restore the state that they change, for which they query some fifteen values a frame. false: they query
+  // nothing, and leave that state as in a new context, for a caller that sets its own state anyway.
   bool restores_state = true;
   PixelFormat colour = PixelFormat::kRGBA16F;         // or RGBA8: see RenderTargets; imported also RGBA32F
   PixelFormat velocity_format = PixelFormat::kRG16F;  // imported also RG32F
@@ -58,8 +58,8 @@ struct BridgeSettings {
 // Returns settings that hand over what frames of this plan need.
 QUINCUNX_API BridgeSettings bridge_settings(const ResolvePlan& plan);
 
-// Textures of the caller's: GL_TEXTURE_2D, not multisampled, at least as large as the viewport, which is their part
-// from texel (0, 0). Rows are carried as they lie (Origin). Only the planes that the settings ask for are read.
+// The caller's textures: GL_TEXTURE_2D, not multisampled, at least as large as the viewport, which begins at texel (0,
+// 0). The order of rows stays (Origin). Only the images that the settings ask for are read.
 struct FrameTextures {
   GLuint colour = 0;    // of the settings' format; for RGBA8 also SRGB8_ALPHA8, whose codes are taken
   GLuint depth = 0;     // any depth format, or R32F
@@ -68,7 +68,7 @@ struct FrameTextures {
 };
 
 // The inputs of one slot as OpenCL sees them. The views are valid until the bridge is destroyed, and with placed
-// targets until the slot is drawn again. Planes that are not handed over are empty. All have the target extent and,
+// targets until the slot is drawn again. Images that are not handed over are empty. All have the target extent and,
 // where they are buffers, its pitch; placed ones have the viewport's.
 struct SharedFrame {
   ImageView colour;
@@ -77,8 +77,8 @@ struct SharedFrame {
   ImageView reactive;
 };
 
-// Opens the OpenCL device that suits the context: one that shares with it where `interop` allows and one exists, else
-// the one that `selector` names (see Device::open).
+// Opens the OpenCL device that suits the context: one that shares with it, if `interop` allows that and one exists,
+// else the one that `selector` names (see Device::open).
 QUINCUNX_API Result<Device> open_device(const Context& context, const std::string& selector, Interop interop);
 
 class QUINCUNX_API Bridge {
@@ -94,8 +94,8 @@ class QUINCUNX_API Bridge {
   virtual Storage storage() const = 0;                   // storage of the inputs
   int slots() const { return settings_.slots; }
 
-  // Takes a slot back from OpenCL, for which it waits until the work that reads it is done, and returns its framebuffer
-  // for a frame of the viewport `render`: its top left part, or with placed targets the whole of it; those stay until
+  // Takes a slot back from OpenCL, and waits until the work that reads it is done. Returns its framebuffer for a frame
+  // of the viewport `render`: its top left part, or with placed targets the whole of it. Placed targets are valid until
   // the next begin_draw().
   virtual Result<const RenderTargets*> begin_draw(int slot, Extent render) = 0;
 
@@ -106,17 +106,17 @@ class QUINCUNX_API Bridge {
   // afterwards see the frame.
   virtual Result<SharedFrame> acquire(int slot) = 0;
 
-  // Takes a frame from textures of the caller's, in place of begin_draw() and submit(). They are copied in OpenGL's
-  // order, so that later drawing does not reach this frame. Errors: kInvalidArgument, which names each texture
-  // that is wrong; the slot then stays as it was.
+  // Takes a frame from the caller's textures, in place of begin_draw() and submit(). They are copied in OpenGL's order,
+  // so that later drawing does not change this frame. Errors: kInvalidArgument, which names each texture that is wrong;
+  // the slot then stays as it was.
   virtual Status submit(int slot, const FrameTextures& textures, Extent render) = 0;
 
-  // Does that and acquire(), slot after slot: enough for a renderer that does not draw ahead.
+  // Calls that submit() and acquire() for one slot after the other: enough for a renderer that does not draw ahead.
   Result<SharedFrame> import(const FrameTextures& textures, Extent render);
 
-  // Has OpenGL asked again about textures of the caller's. The bridge asks once about each name in each place, so that
-  // a steady frame asks nothing, and again where a texture seems too small or wrong. Call it when a texture got
-  // another size, format, other levels or filters, and when one was deleted.
+  // Makes the bridge query the caller's textures again. It queries each texture only once for each input, and again if
+  // it seems too small or wrong. Call this when a texture's size, format, levels or filters have changed, and when one
+  // was deleted.
   void textures_changed();
 
   // Returns the target of FrameOutputs::presented, or of the linear picture: output extent, BridgeSettings::picture.
@@ -124,8 +124,8 @@ class QUINCUNX_API Bridge {
   virtual Result<ImageView> begin_present() = 0;
 
   // Waits for the dispatch that writes it, which was enqueued before, and brings the picture to GL and the caller.
-  // `into`: a texture of the caller's that gets it, of the picture's format (for RGBA8 also SRGB8_ALPHA8) and at least
-  // its size; 0: presented_texture(). Errors: kInvalidArgument where that texture is wrong.
+  // `into`: a texture of the caller's that receives it, of the picture's format (for RGBA8 also SRGB8_ALPHA8) and at
+  // least its size; 0: presented_texture(). Errors: kInvalidArgument if that texture is wrong.
   virtual Status present(GLuint into = 0) = 0;
   virtual GLuint presented_texture() const = 0;        // row 0 on top, or as Origin says
   virtual const std::uint8_t* presented_pixels() = 0;  // tightly packed; valid until begin_present()

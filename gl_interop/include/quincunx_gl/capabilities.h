@@ -30,7 +30,7 @@ struct Capabilities {
 // Returns the abilities of the context that is current on this thread; found once for each context.
 QUINCUNX_API const Capabilities& capabilities();
 
-// Finds them anew, for a new context, which may have the address of one that is gone.
+// Finds them again, for a new context, which may have the address of one that was destroyed.
 QUINCUNX_API const Capabilities& renewed_capabilities();
 
 }  // namespace quincunx::gl

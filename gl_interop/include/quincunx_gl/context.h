@@ -33,10 +33,10 @@ struct ContextInfo {
   bool software = false;  // llvmpipe, softpipe, swrast
 };
 
-// Owns display connection and context, except for kCurrent: that context stays its maker's, who keeps it
-// alive and current longer than this object. Move-only. The context is current on the thread that made it, and
-// every GL call of this library happens on the thread where it is current. The caller destroys it after all GL
-// objects. Debug output of the driver (errors, not chatter) of its own context goes to the log.
+// Owns display connection and context, except for kCurrent: that context stays its owner's, who keeps it alive and
+// current longer than this object. Move-only. The context is current on the thread that made it, and every GL call of
+// this library happens on the thread where it is current. The caller destroys it after all GL objects. Debug output of
+// the driver (errors, not chatter) of its own context goes to the log.
 class QUINCUNX_API Context {
  public:
   // Makes a context, or takes the current one, whose API then counts. Errors: kUnsupported with each attempt and its

@@ -2,10 +2,10 @@
 // FrameTimer, PartTimer: measure how long OpenGL worked on each frame, or on a part of it, for a resolution controller.
 //
 // FrameTimer never waits for a frame. It uses GL_TIME_ELAPSED queries only if they agree with fences on a known load
-// when the timer is made, as software renderers count something else. The fall-back sees by a fence that a frame is
-// done. Its time runs from begin(), or from when the frame before it was seen done, to the poll() that sees it: an
-// upper bound that is as exact as polls are frequent. All calls come from the thread where the GL context is current,
-// and put GL's state back as it was.
+// when the timer is made, as software renderers count something else. Otherwise a fence shows that a frame is done. The
+// frame's time then runs from begin(), or from the poll() that saw the previous frame done, to the poll() that sees it
+// done: an upper bound that is as exact as polls are frequent. All calls come from the thread where the GL context is
+// current, and restore GL's state.
 #pragma once
 
 #include <cstdint>
@@ -48,7 +48,7 @@ class QUINCUNX_API FrameTimer {
   void end();
 
   // Returns the oldest frame that has come back, once each; nothing while there is none. Call until it returns nothing.
-  // Frames whose time the driver calls worthless stay untimed. Frames of a lost context never come back.
+  // Frames whose time the driver reports as invalid stay untimed. Frames of a lost context never come back.
   std::optional<TimedFrame> poll();
 
  private:

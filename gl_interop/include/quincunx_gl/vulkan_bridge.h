@@ -7,12 +7,12 @@
 //   service.dispatch(inputs, output)
 //   bridge->present({picture}, {}, {done}), and wait for `done` before the picture is used
 //
-// Vulkan copies images into memory that both have, on the device, or into the host's for a processor's OpenCL; rows and
-// tiling are then no question of drivers. Semaphores order the two; where OpenCL imports none, the host waits.
+// Vulkan copies images into memory on the device that both APIs share, or into host memory if OpenCL runs on the CPU.
+// So drivers need not agree on rows and tiling. Semaphores order the two; if OpenCL imports none, the host waits.
 //
-// It needs a device of Vulkan 1.1 made with VK_KHR_external_memory_fd, and with VK_KHR_external_semaphore_fd where it
-// has that. The caller's objects outlive the bridge. Calls come from one thread at a time; they submit to the queue,
-// which nobody else uses meanwhile, and use OpenCL's. Built where Vulkan's headers are installed.
+// It needs a Vulkan 1.1 device made with VK_KHR_external_memory_fd, and with VK_KHR_external_semaphore_fd if it has
+// that. The caller's objects outlive the bridge. Calls come from one thread at a time. They submit to the Vulkan queue,
+// which nobody else uses meanwhile, and use OpenCL's queue. Built where Vulkan's headers are installed.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -34,8 +34,8 @@ struct VulkanContext {
   std::uint32_t queue_family = 0;
 };
 
-// An image of one sample and one level, usable for transfers, at least as large as the viewport or picture, which is
-// its part from texel (0, 0); or a buffer with such texels.
+// An image of one sample and one level, usable for transfers, at least as large as the viewport or picture, which
+// begins at texel (0, 0); or a buffer with such texels.
 struct VulkanImage {
   VkImage image = VK_NULL_HANDLE;
   VkImageLayout layout =
@@ -51,21 +51,21 @@ struct VulkanSemaphore {
   std::uint64_t value = 0;                 // of a timeline; binary ones have none
 };
 
-// Only the planes that the settings ask for are read.
+// Only the images that the settings ask for are read.
 struct VulkanFrame {
   VulkanImage colour = {};
   VulkanImage depth = {};
   VulkanImage velocity = {};
   VulkanImage reactive = {};
   VulkanSemaphore drawn = {};  // waited for before the images are read
-  VulkanSemaphore taken = {};  // signalled when they were; later work on the same queue needs none
+  VulkanSemaphore taken = {};  // signalled when they have been read; later work on the same queue needs none
 };
 
 class QUINCUNX_API VulkanBridge {
  public:
-  // `settings`: bridge_settings(plan). Of its fields those that are only OpenGL's (interop, imports, restores_state,
-  // checkerboard) say nothing here, and targets are kViewport. A pattern is carried both ways before a way is trusted.
-  // Errors: kInvalidArgument, kUnsupported where neither OpenCL takes the device's memory nor uses the host's.
+  // `settings`: bridge_settings(plan). Fields that concern only OpenGL (interop, imports, restores_state, checkerboard)
+  // are ignored, and targets must be kViewport. A test pattern must pass both ways first. Errors: kInvalidArgument,
+  // kUnsupported if OpenCL neither imports the device's memory nor uses the host's.
   static Result<std::unique_ptr<VulkanBridge>> create(const VulkanContext& context, const Device& device,
                                                       const BridgeSettings& settings);
   ~VulkanBridge();  // waits for the copies, and for OpenCL
@@ -75,14 +75,14 @@ class QUINCUNX_API VulkanBridge {
   const std::string& reason() const;  // one sentence: how it works here
 
   // Takes a frame, which is copied in the queue's order. The views are valid until `slots` frames later; commands that
-  // are enqueued on OpenCL's queue afterwards see the frame. Errors: kInvalidArgument, which names each plane that is
+  // are enqueued on OpenCL's queue afterwards see the frame. Errors: kInvalidArgument, which names each image that is
   // wrong: nothing was submitted then.
   Result<SharedFrame> import(const VulkanFrame& frame, Extent render);
 
   // Returns the target of FrameOutputs::presented, or of the linear picture; the same view each time.
   Result<ImageView> begin_present();
-  // Brings the picture, whose dispatch was enqueued before, to `picture`: `free` is waited for before that is written,
-  // `done` is signalled afterwards.
+  // Copies the picture, whose dispatch was enqueued before, to `picture`: waits for `free` before writing it, and
+  // signals `done` afterwards.
   Status present(const VulkanImage& picture, const VulkanSemaphore& free = {},
                  const VulkanSemaphore& done = {});
 

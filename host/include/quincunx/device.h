@@ -35,19 +35,19 @@ struct DeviceInfo {
   bool images = false;               // image2d_t at all
   bool two_channel_images = false;   // RG half images, readable and writable
   bool host_unified_memory = false;  // buffers over host memory cost no copy
-  // Images can be made on buffers (cl_khr_image2d_from_buffer) whose rows are a multiple of so many texels apart;
-  // 0: they cannot.
+  // The row pitch of buffers that images can be made on (cl_khr_image2d_from_buffer) is a multiple of so many texels;
+  // 0: not supported.
   int image_pitch_texels = 0;
   bool gl_sharing = false;  // cl_khr_gl_sharing is advertised (the bridge still probes it)
-  DeviceUuid uuid = {};     // zeros: the driver does not tell (cl_khr_device_uuid)
-  // Handles of other APIs that are taken (cl_khr_external_memory, cl_khr_external_semaphore_opaque_fd).
+  DeviceUuid uuid = {};     // zeros: not known (cl_khr_device_uuid)
+  // Handles of other APIs that can be imported (cl_khr_external_memory, cl_khr_external_semaphore_opaque_fd).
   bool imports_opaque_fds = false;
   bool imports_dma_bufs = false;
   bool imports_semaphores = false;
 };
 
 struct FrontKey;
-// Returns the key of the fronts that are measured on this device, for a scene; empty: for any.
+// Returns the key of the error fronts measured on this device for a scene; empty: for any scene.
 QUINCUNX_API FrontKey front_key(const DeviceInfo& device, const std::string& scene = {});
 
 class QUINCUNX_API Device {
@@ -58,9 +58,9 @@ class QUINCUNX_API Device {
 
   // Opens a device. `selector` is "" for the first of list(), "cpu" or "gpu" for the first of that kind, an index of
   // list(), or a part of "platform name", case-insensitive. A number beyond the last index is a part of a name: "4090".
-  // Where several names have the part the first device is opened, and the log names the others. `properties` holds
+  // If several names contain the part, the first device is opened, and the log names the others. `properties` holds
   // further context properties for GL sharing, ended by zero, or is null. Errors: kInvalidArgument when nothing matches
-  // (the message lists what there is), kDeviceFailure when the context cannot be made.
+  // (the message lists the devices), kDeviceFailure when the context cannot be made.
   static Result<Device> open(const std::string& selector = {},
                              const cl_context_properties* properties = nullptr);
 
@@ -68,7 +68,7 @@ class QUINCUNX_API Device {
   // reported only where it was made with CL_QUEUE_PROFILING_ENABLE.
   static Result<Device> borrow(cl_context context, cl_device_id device, cl_command_queue queue);
 
-  // Returns the same device, context and queue; services made on it cut their work by this profile.
+  // Returns the same device, context and queue; services made on it use this profile.
   Device with_profile(const DeviceProfile& profile) const;
 
   const DeviceInfo& info() const;
@@ -89,7 +89,7 @@ class QUINCUNX_API Device {
   Status download(const ImageView& image, Extent extent, void* texels, std::size_t row_bytes = 0) const;
 
   // Imports memory and semaphores of another API. Errors: kInvalidArgument for a bad field and for memory of another
-  // device, kUnsupported where the device takes no such handle, kDeviceFailure where the driver refuses it.
+  // device, kUnsupported if the device cannot import such a handle, kDeviceFailure if the driver refuses it.
   Result<SharedMemory> import_memory(const ExternalMemory& external) const;
   // `fd`: an opaque one (VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT), which stays the caller's.
   Result<Semaphore> import_semaphore(int fd) const;

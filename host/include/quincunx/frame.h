@@ -18,23 +18,24 @@
 
 namespace quincunx {
 
-// The camera's motion, for velocity from depth and to know surfaces again. The matrix is column-major and takes
-// (ndc.x, ndc.y, depth, 1) of this frame to homogeneous clip coordinates of the previous frame, both without jitter, in
-// InputConventions::clip_space. Depth is the depth target's. The identity: the camera stands still, or nobody knows.
+// The camera's motion, for velocity from depth and to recognise surfaces. The matrix is column-major and takes (ndc.x,
+// ndc.y, depth, 1) of this frame to homogeneous clip coordinates of the previous frame, both without jitter, in
+// InputConventions::clip_space. Depth is the depth target's. The identity: the camera stands still, or its motion is
+// unknown.
 struct CameraMotion {
   std::array<float, 16> clip_to_previous_clip = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };
 
-// Returns the jitter of a frame for Method::kTemporal, in render pixels, within half a pixel: one of jitter_phases()
-// places, in turns (Halton in bases 2 and 3, about the mean of the places). Draw the frame with clip coordinates that
-// are shifted by it (docs/inputs.md#jitter), and give it as FrameInputs::jitter. Without jitter, or with the same in
-// all frames, several frames see no more than one: a still picture stays coarse, and its edges crawl when it moves.
-// Pure; {0, 0} where an extent is empty.
+// Returns the jitter of a frame for Method::kTemporal, in render pixels, within half a pixel. It repeats
+// jitter_phases() places: those of the Halton sequence in bases 2 and 3, less their mean. Draw the frame with clip
+// coordinates that are shifted by it (docs/inputs.md#jitter), and give it as FrameInputs::jitter. Without jitter, or
+// with the same in all frames, many frames show no more detail than one: a still picture stays coarse, and its edges
+// crawl when it moves. Pure; {0, 0} where an extent is empty.
 [[nodiscard]] QUINCUNX_API Vec2 jitter(std::uint64_t frame_index, Extent render, Extent output);
 // Returns ceil(8 output.area() / render.area()), at most 512: each output pixel then gets eight samples.
 [[nodiscard]] QUINCUNX_API int jitter_phases(Extent render, Extent output);
-// Returns what to add to textures' level of detail where frames have that jitter: log2 of the scale, the mean of both
-// axes, - 1 (as AMD FidelityFX Super Resolution 2). Without it they stay as soft as the render extent makes them.
+// Returns the LOD bias of textures for frames with that jitter: log2(scale) - 1, with the geometric mean of both axes'
+// scales (as AMD FidelityFX Super Resolution 2). Without it textures stay as soft as the render extent makes them.
 [[nodiscard]] QUINCUNX_API float texture_lod_bias(Extent render, Extent output);
 
 // One rendered frame. The images belong to the caller and stay unchanged until the work of this dispatch is
@@ -48,7 +49,7 @@ struct FrameInputs {
   ImageView depth = {};       // R32F, by InputConventions
   ImageView velocity = {};    // RG16F or RG32F, by InputConventions
   ImageView reactive = {};    // R8, 0: trust history, 1: ignore it
-  Extent render_extent = {};  // the viewport, within the images' (placed: just that); any size from 1x1
+  Extent render_extent = {};  // the viewport, within the images (placed: all of them); any size from 1x1
   // The picture's size in this frame, from settings.output.min_extent to output_extent; {0, 0}: the latter. History of
   // another size is resampled to it.
   Extent output_extent = {};
@@ -59,15 +60,15 @@ struct FrameInputs {
   float near_plane = 0;
   float far_plane = 0;
   CameraMotion camera = {};
-  // Where settings.targets.particle_extent says so, particles that were drawn apart, with the frame's camera and
-  // jitter, over transparent black, hidden by `particle_depth`. They are laid over `colour` and `reactive`.
+  // With settings.targets.particle_extent: particles that were drawn into a viewport of their own, with the frame's
+  // camera and jitter, over transparent black, hidden by `particle_depth`. They are laid over `colour` and `reactive`.
   ImageView particle_colour = {};      // as colour; alpha: coverage
   ImageView particle_depth = {};       // R32F: the frame's depth resampled, of a surface that the pixel shows
   ImageView particle_reactive = {};    // R8
   Extent particle_render_extent = {};  // the particles' viewport; any size from 1x1
-  // What makes of linear colour the light that is shown, before its curve: the present pass multiplies by it. By it
-  // `temporal`, quincunx:reprojected and sharpening know, too, how bright the scene's unit of light is, which they
-  // measure where neither this nor the image is given. 0: not given, 1 in the present pass. Not read with RGBA8.
+  // Factor of linear colour before the tone map: the present pass multiplies by it. It also tells `temporal`,
+  // quincunx:reprojected and sharpening how bright the scene's unit of light is; they measure that if neither this nor
+  // the image is given. 0: not given, 1 in the present pass. Not read with RGBA8.
   float exposure = 0;
   // R32F, 1x1, a buffer or an image: another factor of the exposure, made on the device. A value that is not positive
   // and finite counts as none.
@@ -76,9 +77,9 @@ struct FrameInputs {
   // Shading::kCheckerboard: pixels (x, y) with (x + y) % 2 == parity are shaded, the others are not read; 0 or 1.
   int parity = 0;
   std::uint64_t frame_index = 0;  // the caller's number, echoed in the report
-  // With settings.control.fades, another picture of this frame, as another method's service made it: format and
-  // extent of FrameOutputs::linear, a buffer, other memory. The finished picture has `fade_weight` of its own, in
-  // [0, 1], and the rest of this one.
+  // With settings.control.fades: another method's picture of this frame, in the format and extent of
+  // FrameOutputs::linear, in another buffer. `fade_weight`, in [0, 1], is the weight of this frame's own picture in the
+  // mix of both.
   ImageView fading_from = {};
   float fade_weight = 1;
 };

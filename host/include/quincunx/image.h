@@ -16,8 +16,8 @@
 
 namespace quincunx {
 
-// Colour formats are linear light with premultiplied alpha. kRGBA8 is sRGB encoded: linear light as the screen shall
-// show it, premultiplied, then each colour encoded by IEC 61966-2-1; alpha is not.
+// Colour formats are linear light with premultiplied alpha. kRGBA8 is sRGB encoded: the linear light that the screen
+// shows, premultiplied, then each colour encoded by IEC 61966-2-1; alpha is not.
 enum class PixelFormat : std::uint8_t {
   kNone = 0,
   kR8,       // unsigned normalised: reactive values

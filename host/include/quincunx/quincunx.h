@@ -17,7 +17,7 @@
  * wrong, where, and what would be right. After an error nothing has changed unless the function says otherwise.
  * Pointers to what a function makes are then NULL. No exception leaves the library.
  *
- * c/control.h chooses each frame's resolution and method, for those who want that.
+ * c/control.h has controllers that choose each frame's resolution and method.
  *
  * Threads: a device with its services belongs to one thread at a time. Plans may be read by several. */
 #ifndef QUINCUNX_QUINCUNX_H
@@ -70,8 +70,8 @@ QUINCUNX_API quincunx_status quincunx_set_log(quincunx_log_function function, vo
 QUINCUNX_API quincunx_status quincunx_settings_init(quincunx_settings* settings);
 
 /* As quincunx::jitter(), jitter_phases() and texture_lod_bias() of frame.h, for QUINCUNX_TEMPORAL: where the samples of
- * a frame lie (to jitter[0] and [1], render pixels, +x right, +y down), how many places there are, and what to add to
- * textures' level of detail. Without jitter several frames see no more than one. */
+ * a frame lie (to jitter[0] and [1], render pixels, +x right, +y down), how many places there are, and the LOD bias of
+ * textures. Without jitter many frames show no more detail than one. */
 QUINCUNX_API void quincunx_jitter(uint64_t frame_index, int32_t render_width, int32_t render_height,
                                   int32_t output_width, int32_t output_height, float jitter[2]);
 QUINCUNX_API int32_t quincunx_jitter_phases(int32_t render_width, int32_t render_height, int32_t output_width,
@@ -84,8 +84,8 @@ QUINCUNX_API const char* quincunx_method_name(int32_t method);
 /* Names of methods with the settings that change their picture and cost, "temporal:fast", in the order of growing
  * effort. NULL for a number that is none. Static. */
 QUINCUNX_API const char* quincunx_variant_name(int32_t variant);
-/* Sets the method, whatever it was, and what goes with it to what such a name says; a method's name stands for its
- * defaults. Errors: QUINCUNX_INVALID_ARGUMENT for another name (the sentence lists them) and other bad fields. */
+/* Sets the method and its form, sampling or preset by such a name; a method's name alone means its defaults. Errors:
+ * QUINCUNX_INVALID_ARGUMENT for another name (the sentence lists them) and other bad fields. */
 QUINCUNX_API quincunx_status quincunx_settings_set_method(quincunx_settings* settings, const char* name);
 
 /* The passes and images that follow from the settings. Pure: needs no device. Errors: QUINCUNX_INVALID_ARGUMENT; the
@@ -105,7 +105,7 @@ QUINCUNX_API int32_t quincunx_plan_reads_history(const quincunx_plan* plan, int3
                                                  int32_t output_height);
 
 /* Opens an OpenCL device. `selector`: "" or NULL for the first one, GPUs before CPUs; "cpu" or "gpu"; a number; or a
- * part of "platform name". Errors: QUINCUNX_INVALID_ARGUMENT where nothing matches (the sentence lists what there is),
+ * part of "platform name". Errors: QUINCUNX_INVALID_ARGUMENT where nothing matches (the sentence lists the devices),
  * QUINCUNX_UNSUPPORTED without any device, QUINCUNX_DEVICE_FAILURE. */
 QUINCUNX_API quincunx_status quincunx_device_open(const char* selector, quincunx_device** device);
 /* Uses the caller's cl_context, cl_device_id and in-order cl_command_queue, all retained until the device and its
@@ -115,7 +115,7 @@ QUINCUNX_API quincunx_status quincunx_device_borrow(void* context, void* id, voi
 QUINCUNX_API void quincunx_device_destroy(quincunx_device* device);
 QUINCUNX_API const char* quincunx_device_name(
     const quincunx_device* device); /* lives as long as the device */
-/* How the work is cut for it, "tuned 2026-11-22 21:05 UTC", and what times its passes, "OpenCL event"; as above. */
+/* Its profile, "tuned 2026-11-22 21:05 UTC", and the clock that times its passes, "OpenCL event"; as above. */
 QUINCUNX_API const char* quincunx_device_profile(const quincunx_device* device);
 QUINCUNX_API const char* quincunx_device_pass_timer(const quincunx_device* device);
 /* Its cl_context, cl_device_id and cl_command_queue, to make memory objects with. Not retained; NULL for no device. */
@@ -123,20 +123,20 @@ QUINCUNX_API void* quincunx_device_context(const quincunx_device* device);
 QUINCUNX_API void* quincunx_device_id(const quincunx_device* device);
 QUINCUNX_API void* quincunx_device_queue(const quincunx_device* device);
 
-/* Its UUID; all 0 where the driver does not tell. */
+/* Its UUID; all 0: not known. */
 QUINCUNX_API void quincunx_device_uuid(const quincunx_device* device, uint8_t uuid[16]);
 
 /* Memory and binary semaphores of another API, as SharedMemory and Semaphore of advanced/external.h have them. They may
  * be destroyed when the work that uses them is done. Errors: QUINCUNX_INVALID_ARGUMENT for a bad field and for memory
- * of another device, QUINCUNX_UNSUPPORTED where the device takes no such handle, QUINCUNX_DEVICE_FAILURE. */
+ * of another device, QUINCUNX_UNSUPPORTED if the device cannot import such a handle, QUINCUNX_DEVICE_FAILURE. */
 enum quincunx_handle { QUINCUNX_OPAQUE_FD = 0, QUINCUNX_DMA_BUF = 1, QUINCUNX_MAPPED = 2 };
 QUINCUNX_API quincunx_status quincunx_memory_import(const quincunx_device* device,
                                                     const quincunx_external_memory* external,
                                                     quincunx_memory** memory);
 QUINCUNX_API void quincunx_memory_destroy(quincunx_memory* memory);
 QUINCUNX_API void* quincunx_memory_object(const quincunx_memory* memory); /* a cl_mem, not retained */
-/* The other API owns the memory first. Each enqueues a change; `done` may be NULL, else it gets a cl_event of that,
- * which the caller releases; NULL where nothing had to change. */
+/* The other API owns the memory first. Each call enqueues a change of owner. `done`, if not NULL, receives a cl_event
+ * of that, which the caller releases; NULL if nothing had to change. */
 QUINCUNX_API quincunx_status quincunx_memory_acquire(quincunx_memory* memory);
 QUINCUNX_API quincunx_status quincunx_memory_release(quincunx_memory* memory, void** done);
 QUINCUNX_API quincunx_status quincunx_semaphore_import(const quincunx_device* device, int32_t fd,

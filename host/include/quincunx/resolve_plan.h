@@ -20,7 +20,7 @@ namespace quincunx {
 
 struct FrameInputs;
 
-// The scene's abilities: everything that it will ever do while this plan is used.
+// Everything that the scene may do while this plan is used.
 struct SceneNeeds {
   bool moving_objects = true;  // anything but the camera moves
   bool camera_motion = true;
@@ -34,8 +34,8 @@ struct QuincunxSettings {
   TwoFrameForm form = TwoFrameForm::kVelocity;
   Sampling sampling = Sampling::kBilinear;
   float velocity_weight = 1;  // K of kVelocity; >= 0
-  // kReprojected: K of a factor 1/(1 + K|v0 - v1|^2), v1 of the previous sample there, in render pixels a
-  // frame; 0 leaves it out, which is cheaper. It wins where surfaces with other motion disocclude each other.
+  // kReprojected: K of a factor 1/(1 + K|v0 - v1|^2), v1 of the previous sample there, in render pixels a frame; 0
+  // leaves it out, which is cheaper. It helps where surfaces with different motions disocclude each other.
   float residual_weight = 0;
 
   friend bool operator==(const QuincunxSettings&, const QuincunxSettings&) = default;
@@ -45,8 +45,8 @@ struct TemporalSettings {
   TemporalPreset preset = TemporalPreset::kBalanced;
   TemporalView view = TemporalView::kPicture;
   PixelFormat history = PixelFormat::kRGBA16F;  // RGBA16F or RGBA32F
-  // Variance of a sample by chance, in parts of its square, in [0, 1]: of a path tracer about 1 / samples a pixel.
-  // Above 0 the picture is shown denoised.
+  // Variance of a sample's noise, in parts of its square, in [0, 1]: for a path tracer about 1 / samples a pixel. Above
+  // 0 the picture is shown denoised.
   float noise = 0;
 
   friend bool operator==(const TemporalSettings&, const TemporalSettings&) = default;
@@ -74,9 +74,9 @@ struct FocusSettings {
 // How the memory of a frame's images follows the resolution.
 enum class Targets : std::uint8_t {
   kViewport,  // images of the largest viewport's size; a frame uses the top left part of each
-  // Images of exactly the viewport's size, tightly packed in memory that is sized for the largest viewport; made
-  // again at each resolution in a part of it that no frame is read from. Nothing lies outside the viewport then.
-  // After D3D12's placed resources as used by Microsoft and Intel, "Dynamic Resolution Rendering Update for
+  // Images of exactly the viewport's size, tightly packed in memory that is sized for the largest viewport. At each new
+  // resolution they are made again, in a part of it that no frame in flight uses. Nothing lies outside the viewport
+  // then. After D3D12's placed resources as used by Microsoft and Intel, "Dynamic Resolution Rendering Update for
   // DirectX 12", 2018.
   kPlaced,
 };
@@ -98,8 +98,8 @@ struct TargetSettings {
 
 // The finished picture, and the present pass, which makes 8 bits of it.
 struct PictureSettings {
-  // Where the output is dynamic, too ("dual"), a frame's FrameInputs::output_extent may have any size from this one to
-  // settings.output_extent, in which its picture is then shown. {0, 0}: always that.
+  // Makes the output dynamic, too ("dual"): FrameInputs::output_extent may have any size from this one to
+  // settings.output_extent, to which the picture is then scaled. {0, 0}: not dynamic.
   Extent min_extent = {};
   PixelFormat linear = PixelFormat::kRGBA32F;  // RGBA16F or RGBA32F
   bool present = true;                         // run the present pass
@@ -153,7 +153,7 @@ struct ResolveSettings {
 // Returns the settings' method.
 QUINCUNX_API MethodVariant variant_of(const ResolveSettings& settings);
 
-// Sets the method and the fields that count for it; leaves all others as they are.
+// Sets the method and the fields that belong to it; leaves all others as they are.
 QUINCUNX_API void apply(const MethodVariant& variant, ResolveSettings& settings);
 
 // The source of velocity.
@@ -221,20 +221,20 @@ struct QUINCUNX_API ResolvePlan {
   bool blurs() const;                 // motion blur is wanted, and something moves
   bool has_focus() const;             // dispatch() takes FocusInputs
   bool is_dual() const;               // the output is dynamic: settings.output.min_extent
-  bool undilates_velocity() const;    // conventions.drawn_velocity counts: velocity is drawn and read
-  bool moves_sky() const;     // conventions.sky_motion counts: velocity is drawn, and the camera moves
+  bool undilates_velocity() const;    // conventions.drawn_velocity has an effect: velocity is drawn and read
+  bool moves_sky() const;     // conventions.sky_motion has an effect: velocity is drawn, and the camera moves
   bool reads_camera() const;  // FrameInputs::camera is needed
-  // Returns the storage of FrameOutputs::presented: settings.targets.storage, but a buffer where targets are placed,
-  // because an image of that size is not made again and so needs no such memory.
+  // Returns the storage of FrameOutputs::presented: settings.targets.storage, but a buffer if targets are placed,
+  // because the output's size does not change and so needs no placement.
   Storage presented_storage() const;
   // Returns the plan of the focus's region: the same settings for a picture of its extent, with all pixels shaded.
   // FocusInputs::frame is a frame of that plan. Nothing where there is no focus.
   std::optional<ResolvePlan> focus_plan() const;
   // Returns the bytes of the caller's images for one frame, at the largest viewport; the same for both kinds of target.
   std::uint64_t frame_bytes() const;
-  // Returns whether a frame of this viewport reads earlier frames where there are any. kTemporal leaves them out where
-  // samples are so dense, from 1.56 a pixel on, that a frame alone is the better picture. `output`: the frame's; {0,
-  // 0}: settings.output_extent.
+  // Returns whether a frame of this viewport reads earlier frames where there are any. kTemporal ignores them from 1.56
+  // samples a pixel on, where a frame alone is the better picture. `output`: the frame's; {0, 0}:
+  // settings.output_extent.
   bool reads_history(Extent render, Extent output = {}) const;
   std::string explain() const;  // a page of plain text
 

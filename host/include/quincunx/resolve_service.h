@@ -7,8 +7,8 @@
 //   FrameReport report = service.value().dispatch({.colour = ..., .render_extent = ...}, {.presented = ...});
 //
 // create() compiles (or loads from the program cache), allocates and warms up. After it a frame allocates nothing,
-// compiles nothing and does not wait for the device (but: docs/pipeline.md#time). Calls on one service come from one
-// thread at a time, and so do all calls on services of one device.
+// compiles nothing and does not wait for the device (exceptions: docs/pipeline.md#time). Calls on one service come from
+// one thread at a time, and so do all calls on services of one device.
 #pragma once
 
 #include <cstdint>
@@ -45,19 +45,19 @@ struct TileKinds {
 // The order of a frame's work among that of other queues of the device's context.
 struct FrameSync {
   std::span<const cl_event> wait_for = {};  // the frame's work begins when all of these are complete
-  // Semaphores of another API (advanced/external.h), imported by the service's device: each of the former was signalled
-  // before the frame's work begins, each of the latter is when it is done; not where the frame was refused or failed.
-  // For memory that changes sides: Semaphore::wait() before SharedMemory::acquire(), and signal() after release().
+  // Semaphores of another API (advanced/external.h), imported by the service's device. The frame's work begins when all
+  // of the former are signalled; it signals all of the latter when it is done, unless the frame was refused or failed.
+  // For memory that changes sides call Semaphore::wait() before SharedMemory::acquire(), and signal() after release().
   std::span<Semaphore* const> wait_semaphores = {};
   std::span<Semaphore* const> signal_semaphores = {};
-  // Where not null, gets an event that is complete when the frame's work is, which the caller releases; null where the
+  // If not null, receives an event that is complete when the frame's work is, and that the caller releases; null if the
   // frame was refused or failed.
   cl_event* done = nullptr;
 };
 
-// Sees a frame that dispatch() has accepted, before its work is enqueued. The images are complete when all that is on
-// the device's queue is done. `focus` is null where there is none. Returns whether it wants to see the next one, too.
-// It must not dispatch.
+// Called with a frame that dispatch() has accepted, before its work is enqueued. The images are complete when
+// everything on the device's queue is done. `focus` is null where there is none. Returns whether it wants to see the
+// next one, too. It must not dispatch.
 using FrameObserver = std::function<bool(const FrameInputs& inputs, const FocusInputs* focus)>;
 
 // Pictures on the way to the finished one.
@@ -90,8 +90,8 @@ class QUINCUNX_API ResolveService {
   // is none. Never waits. Reports are kept for the last 64 frames.
   std::optional<FrameReport> next_completed();
 
-  // Allows dispatch() to wait for the end of each pass, so that the host's clock times it. Off at first. It counts only
-  // on devices whose events have wrong times (PassTimer::kHostClock), where passes have no times otherwise.
+  // Allows dispatch() to wait for the end of each pass, so that the host's clock times it. Off at first. It has an
+  // effect only on devices whose events have wrong times (PassTimer::kHostClock), where passes have no times otherwise.
   void allow_timing_waits(bool allow);
 
   // Fills the top left `render` of an image with one value (unused channels ignored; of RGBA8 the encoded one):
@@ -114,8 +114,8 @@ class QUINCUNX_API ResolveService {
   // kInvalidArgument where the plan does not accumulate.
   Result<ImageView> history() const;
 
-  // Shows every frame from the next one on to `observer`, in place of the one before; an empty one ends that. The next
-  // frame begins without history, so that the pictures follow from the plan and the frames seen alone.
+  // Shows every frame from the next one on to `observer`, which replaces the previous observer; an empty one ends this.
+  // The next frame begins without history, so that the pictures follow from the plan and the frames seen alone.
   void observe(FrameObserver observer);
 
   Status finish();  // waits until every dispatched frame is done

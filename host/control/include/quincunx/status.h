@@ -41,8 +41,8 @@ class [[nodiscard]] Status {
   std::string message_;
 };
 
-// Either a value or the Status that says why there is none. To ask for the value where there is none ends the process,
-// with that sentence on stderr: a program that cannot go on without it may do just that.
+// Either a value or the Status that says why there is none. Asking for a missing value ends the process, with that
+// sentence on stderr: enough for a program that cannot go on without it.
 template <typename T>
 class [[nodiscard]] Result {
  public:

@@ -10,8 +10,8 @@
 
 namespace quincunx {
 
-// Values of FrameInputs::depth and particle_depth. Exactly the value of what is farthest means that nothing is there:
-// infinitely far. d: the distance along the view axis; n, f: near_plane and far_plane.
+// Values of FrameInputs::depth and particle_depth. Exactly the value of the far end means that nothing was drawn there:
+// it is infinitely far. d: the distance along the view axis; n, f: near_plane and far_plane.
 enum class DepthConvention : std::uint8_t {
   kReversedInfinite,  // n / d: 1 at the near plane, 0 at infinity
   kReversed,          // n (f - d) / (d (f - n)): 1 at the near plane, 0 at the far plane

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// DeviceProfile: how the work of each pass is cut for a device. Only speed depends on it.
+// DeviceProfile: how the work of each pass is divided into work-items and groups on a device. Only speed depends on it.
 //
 // Device::open() takes the first one that exists of
 //   tuned     measured by quincunx-bench --tune on this device with this driver, kept in cache_folder()
@@ -21,12 +21,12 @@ namespace quincunx {
 
 class Device;
 
-// The cut of a pass's rows into work-items, and of those into groups.
+// The division of a pass's rows into work-items, and of those into groups.
 struct WorkShape {
   static constexpr int kMostOfGroup = 1024;  // on either axis
   static constexpr int kMostPixels = 1 << 16;
 
-  // A group, in work-items. It is halved until the kernel can have it on the device.
+  // A group, in work-items. It is halved until the device can run the kernel with it.
   int group_width = 1;
   int group_height = 4;
   // Pixels of a row that one work-item makes, rounded up to a kernel's block; 0: the whole row.

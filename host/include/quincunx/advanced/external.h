@@ -24,7 +24,7 @@
 
 namespace quincunx {
 
-// The number by which APIs know a device again (VkPhysicalDeviceIDProperties::deviceUUID); zeros: unknown.
+// The number by which APIs identify a device (VkPhysicalDeviceIDProperties::deviceUUID); zeros: unknown.
 using DeviceUuid = std::array<std::uint8_t, 16>;
 
 // Returns its 32 hexadecimal digits.
@@ -41,7 +41,7 @@ struct ExternalMemory {
   MemoryHandle handle = MemoryHandle::kOpaqueFd;
   int fd = -1;             // stays the caller's, who may close it after the import
   void* mapped = nullptr;  // kMapped: outlives the import; at least 128 bytes aligned
-  std::size_t bytes = 0;   // at most as large as it was allocated, which drivers do not all check
+  std::size_t bytes = 0;   // at most the size that was allocated; not all drivers check it
   DeviceUuid device = {};  // the device that it was allocated on; zeros: not checked. Not read with kMapped
 };
 
@@ -57,10 +57,10 @@ class QUINCUNX_API SharedMemory {
   std::size_t bytes() const;
   bool acquired() const;  // OpenCL owns it
 
-  // Enqueues the change to OpenCL: what the other API wrote before is seen by later commands. Nothing where OpenCL owns
-  // it already. The other API must be done: a Semaphore or the host has waited for it.
+  // Enqueues the change of owner to OpenCL: later commands see what the other API wrote before. Does nothing if OpenCL
+  // owns the memory already. The other API must be done: a Semaphore or the host has waited for it.
   Status acquire();
-  // Enqueues the change back. `done`, where not null, gets an event of that, which the caller releases; null where
+  // Enqueues the change back. `done`, if not null, receives an event of that, which the caller releases; null if
   // nothing had to change.
   Status release(cl_event* done = nullptr);
 
@@ -72,7 +72,7 @@ class QUINCUNX_API SharedMemory {
 };
 
 // A binary semaphore of another API: each signal of one side lets one wait of the other go on. One that is never
-// signalled holds the queue for ever; OpenCL knows no time-out. Move-only.
+// signalled blocks the queue for ever, as OpenCL has no time-out. Move-only.
 class QUINCUNX_API Semaphore {
  public:
   ~Semaphore();

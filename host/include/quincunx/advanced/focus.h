@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // FocusInputs: a part of the picture that is drawn a second time, at a larger scale, and laid over it.
 //
-// docs/options.md has the whole of it. Plain structs; a zero means the default written beside the field.
+// See docs/options.md#focus. Plain structs; a zero means the default written beside the field.
 #pragma once
 
 #include <array>

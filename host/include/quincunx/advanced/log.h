@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Log: the library's lines.
+// Log: the library's log lines.
 //
-// Failures are told by Status. Lines tell the rest: the library's choices, parts that are missing, and failures in
-// destructors, which have nobody to tell.
+// Failures are reported by Status. The log has the rest: the library's choices, missing parts, and failures in
+// destructors, which cannot return them.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// MotionCheck: whether velocity points where samples come from, or would with another sign. Values; pure.
+// MotionCheck: checks the signs of velocity. Values; pure.
 //
-// Each frame is compared with the one before, at the places that its samples come from by their velocity, and by the
-// velocity with another sign of x, of y, and of both. A verdict on an axis needs eight frames in which something moves
-// along it and one sign is better. quincunx-resolve --diagnose checks units, jitter and the rest on recorded frames.
+// Each frame is compared with the previous one, at the places that its samples come from by their velocity, and by
+// velocity with the sign of x, of y, or of both flipped. A verdict on an axis needs eight frames in which something
+// moves along it and one sign is better. quincunx-resolve --diagnose checks units, jitter and the rest on recorded
+// frames.
 #pragma once
 
 #include <cstdint>

@@ -59,7 +59,7 @@ typedef struct quincunx_controller_settings {
   double factor;                       /* minimum of N: in (0, 1]; default 0.2 */
   double margin;                       /* minimum of N: in (0, 1]; default 0.87 */
   int32_t count;                       /* minimum of N: N, in [1, 1000]; default 5 */
-  /* What follows counts for predictive and quality. */
+  /* The following fields are of predictive and quality. */
   int32_t cpu_bound; /* default QUINCUNX_HOLD */
   double fixed_part; /* first guess of what does not scale, in [0, 0.9]; default 0.25 */
   /* Replaces that guess, if it spans enough resolutions; copied; default NULL. */
@@ -68,7 +68,7 @@ typedef struct quincunx_controller_settings {
   double blur_full_px;   /* from which blur_min_scale is the limit; above blur_start_px; default 24 */
   double blur_min_scale; /* per axis, in (0, 1]; default 0.71 */
   int32_t blur_aware;    /* the three above count; default 0 */
-  /* What follows counts for quality. */
+  /* The following fields are of quality. */
   int32_t fade_frames; /* over which a change of method is faded in, in [0, 60]; 0: at once; default 6 */
   const quincunx_front* front; /* copied; default NULL: the one that is built in */
   const char* const* methods;  /* names of quincunx_variant_name(); default NULL: all of the front */
@@ -92,7 +92,7 @@ typedef struct quincunx_timing {
   int32_t missed_vsyncs;           /* refreshes without a new frame before it was shown; 0 means none */
   double blur_px;                  /* mean length of its motion blur streaks in output pixels; 0 means none */
   double resolve_ms;               /* quality: the method's passes' part of gpu_ms */
-  const quincunx_content* content; /* quality: what it shows; NULL: as the frame before */
+  const quincunx_content* content; /* quality: its content; NULL: as the frame before */
 } quincunx_timing;
 
 /* How to draw and resolve the next frame. */
@@ -124,7 +124,7 @@ QUINCUNX_API quincunx_status quincunx_controller_observe(quincunx_controller* co
 /* Before the first frame it is the highest rung. Errors: QUINCUNX_INVALID_ARGUMENT. */
 QUINCUNX_API quincunx_status quincunx_controller_choice(const quincunx_controller* controller,
                                                         quincunx_choice* choice);
-/* Quality: why the last choice was made, a few lines; "" of others. Lives until the next call with the controller. */
+/* Quality: the reasons of the last choice, a few lines; else "". Lives until the next call with the controller. */
 QUINCUNX_API const char* quincunx_controller_text(quincunx_controller* controller);
 /* Errors: QUINCUNX_INVALID_ARGUMENT for one outside (0, 60000]; the old target then stays. */
 QUINCUNX_API quincunx_status quincunx_controller_set_target_ms(quincunx_controller* controller,
@@ -158,7 +158,7 @@ QUINCUNX_API quincunx_status quincunx_costs_fixed_part(const quincunx_costs* cos
 /* JSON. Lives until the next call with the costs. */
 QUINCUNX_API const char* quincunx_costs_text(quincunx_costs* costs);
 
-/* How wrong each method's picture is at each scale, and what it costs: error_front.h. `json`: as quincunx_front_text()
+/* The error of each method's picture at each scale, and its cost: error_front.h. `json`: as quincunx_front_text()
  * gives it; NULL: the front that is built in. Errors: QUINCUNX_INVALID_ARGUMENT. */
 QUINCUNX_API quincunx_status quincunx_front_parse(const char* json, quincunx_front** front);
 /* That of a device, measured or built in, for a scene's name; "" or NULL: any. Errors: QUINCUNX_INVALID_ARGUMENT. */
@@ -176,7 +176,7 @@ QUINCUNX_API quincunx_status quincunx_front_flip(const quincunx_front* front,
 QUINCUNX_API quincunx_status quincunx_front_resolve_ms(const quincunx_front* front, const char* method,
                                                        double scale, double output_megapixels, double* ms);
 
-/* An output that goes along with the render extent, for inputs.output_*: output_follower.h. */
+/* An output that follows the render extent, for inputs.output_*: output_follower.h. */
 typedef struct quincunx_output_settings {
   size_t struct_size;    /* sizeof(quincunx_output_settings) */
   int32_t display_width; /* the largest output, pixels, each in [1, 32768]; no default */
@@ -201,7 +201,7 @@ QUINCUNX_API quincunx_status quincunx_output_follower_observe(quincunx_output_fo
 QUINCUNX_API quincunx_status quincunx_output_follower_min_output(const quincunx_output_follower* follower,
                                                                  int32_t output[2]);
 
-/* Detail that goes along with the resolution: detail_follower.h. */
+/* Detail that follows the resolution: detail_follower.h. */
 typedef struct quincunx_detail_settings {
   size_t struct_size;  /* sizeof(quincunx_detail_settings) */
   int32_t levels;      /* in [2, 64]; 0 is the full detail, levels - 1 the least; default 4 */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* One frame's images, what goes with them and what is told of it, for quincunx.h. The fields are those of image.h and
+/* One frame's images, its other inputs and its report, for quincunx.h. The fields are those of image.h and
  * frame.h; docs/inputs.md states the conventions at length. The comment behind an image begins with its formats, which
  * programs in other languages may read there. */
 #ifndef QUINCUNX_C_FRAME_H
@@ -23,7 +23,7 @@ typedef struct quincunx_image {
 
 struct quincunx_inputs;
 
-/* Particles that were drawn apart, in a viewport of their own; where settings.particle_target_* are set. */
+/* Particles that were drawn into a viewport of their own; with settings.particle_target_*. */
 typedef struct quincunx_particles {
   size_t struct_size;             /* sizeof(quincunx_particles) */
   const quincunx_image* colour;   /* RGBA16F, RGBA32F or RGBA8, over transparent black; alpha: coverage */
@@ -38,11 +38,10 @@ typedef struct quincunx_rectangle {
   int32_t x, y, width, height;
 } quincunx_rectangle;
 
-/* A part of the picture that is drawn a second time, at a larger scale, as focus.h has it; where settings.focus_* are
- * set. */
+/* A part of the picture that is drawn a second time, at a larger scale, as in focus.h; with settings.focus_*. */
 typedef struct quincunx_focus {
   size_t struct_size; /* sizeof(quincunx_focus) */
-  /* The region as a camera sees it that looks at just that; without focus, particles, fade and sync. */
+  /* The frame of a camera that looks at just the region; without focus, particles, fade and sync. */
   const struct quincunx_inputs* frame;
   int32_t x, y;                         /* the output pixel at the region's upper left corner */
   const quincunx_rectangle* rectangles; /* where it shows, at most four; none: in the whole region */
@@ -71,16 +70,16 @@ typedef struct quincunx_external_memory {
 
 struct quincunx_semaphore;
 
-/* What a frame's work has to do with that of other queues of the device's context, and with other APIs. */
+/* The order of a frame's work among that of other queues of the device's context, and of other APIs. */
 typedef struct quincunx_sync {
   size_t struct_size;    /* sizeof(quincunx_sync) */
   void* const* wait_for; /* cl_event: the frame's work begins when all are complete */
   int32_t wait_count;
   int32_t padding; /* 0 */
-  /* Where not NULL, gets a cl_event that is complete when the frame's work is, which the caller releases; NULL where
+  /* If not NULL, receives a cl_event that is complete when the frame's work is, and that the caller releases; NULL if
    * the frame was refused or failed. */
   void** done;
-  /* The frame's work begins when each of the former was signalled; at its end each of the latter is. */
+  /* The frame's work begins when all of the former are signalled; at its end it signals all of the latter. */
   struct quincunx_semaphore* const* wait_semaphores;
   struct quincunx_semaphore* const* signal_semaphores;
   int32_t wait_semaphore_count;
@@ -101,12 +100,12 @@ typedef struct quincunx_inputs {
   int32_t render_height;
   float jitter_x; /* render pixels: the sample lies at the pixel's centre + jitter; in [-1, 1] */
   float jitter_y;
-  float velocity_scale_x; /* makes velocity what the settings say; both 0: both 1 */
+  float velocity_scale_x; /* factors that give velocity the unit of the settings; both 0: both 1 */
   float velocity_scale_y;
   /* Column-major: this frame's (ndc.x, ndc.y, depth, 1) to the previous frame's clip coordinates, both without jitter;
    * all as settings.clip_space says. All 0: a camera that stands still. */
   float clip_to_previous_clip[16];
-  float exposure;       /* makes the light that is shown, before its curve; 0: 1, and methods measure it */
+  float exposure;       /* factor of linear colour before the tone map; 0: 1, and methods measure the light */
   int32_t reset;        /* not 0: a cut; nothing of the previous frames may be used */
   int32_t parity;       /* of a checkerboard: pixels with (x + y) % 2 == parity are shaded; 0 or 1 */
   int32_t padding;      /* 0 */
@@ -116,7 +115,7 @@ typedef struct quincunx_inputs {
   int32_t
       output_width; /* the picture's size in this frame, from settings.min_output_* on; both 0: the output's */
   int32_t output_height;
-  const quincunx_image* exposure_image; /* R32F, 1x1: a further factor of exposure; NULL: none */
+  const quincunx_image* exposure_image; /* R32F, 1x1: a second factor of exposure; NULL: none */
   const quincunx_particles* particles;  /* NULL: none, as of what follows */
   const quincunx_focus* focus;
   const quincunx_fade* fade;
@@ -140,7 +139,7 @@ typedef struct quincunx_pass_report {
   uint64_t bytes;     /* read and written, each texel counted once */
 } quincunx_pass_report;
 
-/* What a frame shows, as shares of the picture's area in [0, 1]: content_statistics.h. */
+/* Motion and change in a frame, as shares of the picture's area in [0, 1]: content_statistics.h. */
 typedef struct quincunx_content {
   size_t struct_size; /* sizeof(quincunx_content) */
   double moving;      /* that moves by a quarter of an output pixel or more */
@@ -150,7 +149,7 @@ typedef struct quincunx_content {
   double light;       /* whose colour changes and has no velocity */
   double zoom;        /* that moves and grows or shrinks */
   int32_t cut;        /* 1: the first frame of a shot */
-  int32_t judged;     /* 1: `light` is all of it; 0: what has reactive values alone */
+  int32_t judged;     /* 1: `light` includes moving light; 0: only reactive values */
 } quincunx_content;
 
 typedef struct quincunx_report {
@@ -173,10 +172,10 @@ typedef struct quincunx_report {
   int32_t content_known; /* 1: `content` was written; 0: settings.measures_content is 0, or not known yet */
   quincunx_content* content; /* in: where to write it, with its struct_size, or NULL */
   int32_t* in_focus;         /* in: room for pass_capacity, or NULL; out: 1 for passes of the focus */
-  /* With settings.checks_motion, what the frames up to this one say of velocity: "velocity.y seems to point the other
-   * way", or that it points the right way; static. NULL: nothing, as where nothing moves. motion_check.h. */
+  /* With settings.checks_motion, the verdict of the frames up to this one on velocity: "velocity.y seems to point the
+   * other way", or that it points the right way; static. NULL: none, as when nothing moves. motion_check.h. */
   const char* motion;
-  double motion_margin_db; /* by how much that foretells frames better */
+  double motion_margin_db; /* advantage of that over the opposite sign */
 } quincunx_report;
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What a scene needs and how it is resolved, for quincunx.h. The fields are those of SceneNeeds and ResolveSettings in
- * resolve_plan.h and method.h, which say more of each. */
+/* The scene's needs and the settings of the resolve, for quincunx.h. The fields are those of SceneNeeds and
+ * ResolveSettings in resolve_plan.h and method.h, which say more of each. */
 #ifndef QUINCUNX_C_SETTINGS_H
 #define QUINCUNX_C_SETTINGS_H
 
@@ -67,7 +67,7 @@ enum quincunx_format {
 
 typedef struct quincunx_settings {
   size_t struct_size; /* sizeof(quincunx_settings) */
-  /* What the scene will ever do: 0 no, else yes. */
+  /* Everything that the scene may do: 0 no, else yes. */
   int32_t moving_objects; /* anything but the camera moves; default 1 */
   int32_t camera_motion;  /* default 1 */
   int32_t transparents;   /* drawn without velocity, with reactive values; default 1 */
@@ -125,7 +125,7 @@ typedef struct quincunx_settings {
   int32_t checks_padding; /* 0 */
 } quincunx_settings;
 
-/* What follows from a plan for those who bring the images: 0 no, 1 yes. */
+/* The needs of a plan, for those who provide the images: 0 no, 1 yes. */
 typedef struct quincunx_needs {
   size_t struct_size;     /* sizeof(quincunx_needs) */
   int32_t reads_depth;    /* inputs.depth is needed */

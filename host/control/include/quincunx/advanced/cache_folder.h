@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// cache_folder: where compiled kernels, and what else is worth keeping between runs, are kept.
+// cache_folder: the folder of compiled kernels and other results that are kept between runs.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace quincunx {
 
-// $QUINCUNX_CACHE_DIR, else $XDG_CACHE_HOME/quincunx, else ~/.cache/quincunx. Nothing where the user wants none:
-// QUINCUNX_CACHE_DIR set to an empty string. The folder may not exist yet. Safe to call from any thread.
+// Returns $QUINCUNX_CACHE_DIR, else $XDG_CACHE_HOME/quincunx, else ~/.cache/quincunx; nothing if QUINCUNX_CACHE_DIR is
+// set to an empty string. The folder may not exist yet. Safe to call from any thread.
 QUINCUNX_API std::optional<std::filesystem::path> cache_folder();
 
 }  // namespace quincunx

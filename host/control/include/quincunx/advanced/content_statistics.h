@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// ContentStatistics: what a frame shows, as a few shares of its picture, and the mix of scene classes that follows.
+// ContentStatistics: the kinds of motion and change in a frame, as shares of its picture, and the mix of scene classes
+// that follows.
 //
-// Anything that says what it knows will do: sums over tiles that passes have anyway, a coarse grid of velocities, or
-// what the program knows of its camera. A share that nobody counts is 0. Values; any thread may use its own.
+// Any source will do: sums that passes make for tiles, a coarse grid of velocities, or the program's knowledge of its
+// camera. A share that is not measured is 0. Values; any thread may use its own.
 #pragma once
 
 #include "quincunx/advanced/export.h"
@@ -20,8 +21,8 @@ struct ContentStatistics {
   double light = 0;     // whose colour changes and has no velocity: reactive values, moving shadows
   double zoom = 0;      // that moves and grows or shrinks
   bool cut = false;     // the first frame of a shot: nothing of the frames before it is of use
-  // Whether `light` is all of it: someone has looked for light that moves, and not at reactive values alone. The
-  // temporal upscaler does, which has to know where its history is not to be believed.
+  // Whether `light` includes moving light, and not only reactive values. The temporal upscaler detects it when it
+  // judges its history.
   bool judged = false;
 
   static constexpr double kMovingPx = 0.25;  // output pixels a frame

@@ -74,9 +74,9 @@ enum class TemporalPreset : std::uint8_t { kFast, kBalanced, kQuality };
 // Content of kTemporal's resolved picture.
 enum class TemporalView : std::uint8_t {
   kPicture,
-  kConfidence,  // how much is known of a pixel: 1 (white) is all that is ever kept
-  kRejection,   // why history is doubted: red hidden, off screen or reactive; green a motion edge; blue a
-                // change
+  kConfidence,  // a pixel's confidence over the largest that is kept: 1 is white
+  kRejection,   // why history is rejected: red hidden, off screen or reactive; green a motion edge;
+                // blue a change of light
   kPhase,       // where between texels history was read: red x, green y; blue: how far it moved
   // Views of the two layers of history that pixels have where surfaces move apart; without layers no plan is made.
   kLayers,    // red where there are two, green the near one's coverage, blue the far one's confidence

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// DetailFollower: detail settings that go along with the resolution that a controller chooses.
+// DetailFollower: detail settings that follow the resolution that a controller chooses.
 //
-// Level of detail, blur samples, shading rate and the like change in a few levels. Each change is seen and may
-// cost time, so a level is left only when the resolution has clearly moved on, and the follower then rests.
-// dual_output() does the same for the output resolution. Pure values; not thread safe. Source: "Dynamic
-// Resolution Scaling Implementation Best Practice", section 10 (scale settings as well as resolution; "dual"
-// resolution scaling).
+// Level of detail, blur samples, shading rate and the like change in a few levels. Each change is visible and may cost
+// time. So the level changes only when the resolution has clearly moved on, and then rests. dual_output() does the same
+// for the output resolution. Pure values; not thread safe. Source: "Dynamic Resolution Scaling Implementation Best
+// Practice", section 10 (scale settings as well as resolution; "dual" resolution scaling).
 #pragma once
 
 #include "quincunx/advanced/export.h"

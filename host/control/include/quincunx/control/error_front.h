@@ -2,8 +2,8 @@
 // ErrorFront: the measured error of each method's picture at each scale, and the measured cost of the resolve.
 //
 // A point is one class of scenes, one method and one scale. quincunx-bench --front and quincunx-render --calibrate
-// measure points; a table that is built in serves until then. It is what a controller needs that chooses a method as
-// well as a scale. All types here are values without clock or device; a const ErrorFront may be used from any thread.
+// measure points; a built-in table serves until then. A controller that chooses the method as well as the scale needs
+// it. All types here are values without clock or device; a const ErrorFront may be used from any thread.
 #pragma once
 
 #include <array>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// OutputFollower: an output resolution that goes along with the render resolution ("dual" resolution scaling).
+// OutputFollower: an output resolution that follows the render resolution ("dual" resolution scaling).
 //
-// Upscaling to the whole display is wasted where few samples are drawn. So the passes from upscaling on may run at a
-// smaller output, whose picture is then scaled to the display. Each change of the output resamples the history,
-// so the output moves in few, large steps, each only when the render resolution has clearly moved on, and then rests.
-// Pure values; not thread safe. Source: "Dynamic Resolution Scaling Implementation Best Practice", section 10.
+// If few samples are drawn, upscaling them to the whole display is wasted. So the passes from upscaling on may run at a
+// smaller output, whose picture is then scaled to the display. Each change of the output resamples the history, so the
+// output moves in few, large steps, each only when the render resolution has clearly moved on, and then rests. Pure
+// values; not thread safe. Source: "Dynamic Resolution Scaling Implementation Best Practice", section 10.
 #pragma once
 
 #include "quincunx/advanced/export.h"

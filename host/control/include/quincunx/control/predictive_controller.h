@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The default resolution controller: predicts the next frame's time and uses the time that the display's queue allows.
+// The default resolution controller: predicts the next frame's time, and uses the slack of the display's queue.
 //
 // Its model has three parts:
 //   a level: the time that a frame would take at the output resolution;
 //   the part of that which does not scale with the pixels;
 //   the backlog: the device's distance behind the display, from 0 (it waits for a free buffer) to the slack
 //   that the buffers give (beyond it a refresh is missed).
-// It aims just below the target while the backlog is small, lower in proportion to the backlog, and never so
-// high that one more frame like the worst one seen would use up the slack. A single slow frame changes nothing
-// while there is slack; two in a row count as a step and are answered at once. docs/control.md has the whole algorithm
-// and its measured table.
+// It aims just below the target while the backlog is small, lower in proportion to the backlog, and never so high that
+// one more frame like the worst one seen would use up the slack. A single slow frame changes nothing while there is
+// slack; two in a row count as a step and are answered at once. docs/control.md has the algorithm, and
+// docs/lab/control.md its figures.
 //
 // It uses the following, if known: interval_ms or queued (else the backlog is only computed), next_frame
 // (timers that come back late), missed_vsyncs (surprises make it careful until the queue is seen full again),
@@ -36,7 +36,7 @@ struct BlurAware {
   bool enabled = false;
   double start_px = 4;      // mean streak, output pixels, from which it counts
   double full_px = 24;      // from which min_scale is the limit; above start_px
-  double min_scale = 0.71;  // per axis, in (0, 1]; the seed's figure 10
+  double min_scale = 0.71;  // per axis, in (0, 1]; figure 10 of Binks 2012
 };
 
 struct PredictiveSettings {

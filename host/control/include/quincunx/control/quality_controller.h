@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // QualityController: chooses each frame's render extent and method, so that the expected error is the least that fits.
 //
-// It knows what each method costs and how wrong it is at each scale (ErrorFront), what the picture shows
-// (ContentStatistics), and, as the predictive controller does, what drawing costs by resolution and how far the device
-// is behind the display. For each method it finds the largest resolution that fits the target beside the method's own
-// passes; the pair with the least expected FLIP is what it goes to. From frame to frame the method stays and the
-// resolution follows the load within the predictive controller's dead bands.
+// It knows each method's cost and error at each scale (ErrorFront), the picture's content (ContentStatistics), and, as
+// the predictive controller does, the cost of drawing by resolution and the device's backlog. For each method it finds
+// the largest resolution that fits the target beside the method's own passes. It moves to the pair with the least
+// expected FLIP. From frame to frame the method stays and the resolution follows the load within the predictive
+// controller's dead bands.
 //
 // A change of method has to be worth it (hysteresis), comes once a second at most, and is faded in over a few frames,
 // in which both methods run. Right after a cut, where no history is worth anything, or in a fast pan it needs no fade.

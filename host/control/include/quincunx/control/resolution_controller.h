@@ -83,7 +83,7 @@ class QUINCUNX_API ResolutionController {
   bool observed_ = false;
 };
 
-// The seed's proportional controller (Binks, "Dynamic Resolution Rendering", 2012, "Resolution Control"):
+// The proportional controller of Binks, "Dynamic Resolution Rendering", 2012, "Resolution Control":
 //   s <- s (1 + k (1 - t / T))
 // s scales both axes and T is the target. t is the mean of gpu_ms and interval_ms. It is gpu_ms alone where the
 // interval is unknown or significantly longer: that is a spike of the processor or a wait for the display.
