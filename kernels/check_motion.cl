@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // check_motion: predicts samples of this frame from the previous one, at the place that velocity gives and at those
-// with another sign of x, of y and of both, and sums the four errors. Takes every kMotionStep-th sample of every
+// that it gives with x, y or both negated, and sums the four errors. Takes every kMotionStep-th sample of every
 // kMotionStep-th row if all four places lie in the previous frame; it counts for each axis along which it moves by a
 // sample or more. Both frames are softened, so that a place between samples is no smoother than one at a sample.
 //   params      in      viewports, layouts, items, places

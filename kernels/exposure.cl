@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// exposure: what the frame's light is multiplied by to be exposed light, in which a usual scene has a mean of
-// EXPOSED_MEAN. Rules with constants of light (history, sharpening) are made for that, whatever the unit of light.
+// exposure: finds the factor that makes exposed light of the frame's light, in which a usual scene has a mean of
+// EXPOSED_MEAN. Rules with constants of light (history, sharpening) suit that, whatever the unit of light.
 //   wanted    the caller's factor, where there is one; else EXPOSED_MEAN / mean. The mean is that of luma
 //             over 32x16 blocks of up to 8x8 texels (4x4 after a frame with a factor), each at most 256 times the
-//             geometric mean of all: lamps and fireflies do not make all else dark. What is black, negative, infinite
-//             or NaN does not count
-//   factor    of a first frame what is wanted; of others the previous one, times a power of two where that is more than
-//             2^.75 from what is wanted, in two frames one way. So history is rescaled without rounding, and seldom: a
-//             flash, or an exposure that jumps for a frame, leaves no trace. Without light, too, it stays; in a first
-//             frame without light it is 1
+//             geometric mean of all: lamps and fireflies do not make all else dark. Black, negative, infinite and
+//             NaN texels do not count
+//   factor    in a first frame the wanted one; else the previous one, times a power of two if that is more than 2^.75
+//             from the wanted one, in two frames in the same direction. So history is rescaled without rounding, and
+//             seldom: a flash, or an exposure that jumps for a frame, leaves no trace. Without light the factor stays;
+//             in a first frame without light it is 1
 //
 //   params    in   viewport, layout, texels of a block, the caller's number
 //   colour    in   RGBA16F, RGBA32F or, with SOURCE_FORMAT SRGB8, RGBA8, viewport, linear, premultiplied

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// far_fit: fits the camera's motion to the surroundings, by least squares over all cells. Each parameter is held back a
-// little, so that one without evidence is 0.
+// far_fit: fits the camera's motion to the surroundings, by least squares over all cells. Each parameter is regularised
+// a little, so that one without evidence is 0.
 //   cells     in   their number
 //   sums      in   FarSums of each cell, from far_surroundings
 //   previous  in   FarModel of the frame before; all zero where there is none

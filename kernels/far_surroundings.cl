@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // far_surroundings: sums the drawn velocities of a cell of samples for a fit by least squares of the camera's motion,
-// the model in motion/camera_velocity.h. A sample counts 1 / depth, since far samples show the camera's turning more
-// than its walking, and 1 / (1 + (r / .25)^2), where r is the error of the previous frame's motion at it in output
+// the model in motion/camera_velocity.h. A sample counts 1 / depth, since far samples show the camera's rotation more
+// than its translation, and 1 / (1 + (r / .25)^2), where r is the error of the previous frame's fit at it in output
 // pixels, so that moving objects drop out. Takes one of each 2x2 samples.
 //   params    in   viewport, layouts, places
 //   depth     in   R32F, viewport, reversed and infinite

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// resolve_quincunx: blends this frame with the previous one on the five-of-a-die pattern, in the seed's form.
+// resolve_quincunx: blends this frame with the previous one; their samples together form the pattern of the five on a
+// die.
 //   c0, c1 = this and the previous frame, each sampled at the pixel's centre less its jitter
 //   f      = (1 - reactive0) (1 - reactive1) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels a frame
 //   out    = (c0 + f c1) / (1 + f)

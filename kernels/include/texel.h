@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Load and store of texels: this header and those that it includes alone know buffer or image, half or float. Here are
-// loads of the colour that was drawn, and linear light of 8-bit sRGB, which RGBA8 colour holds.
+// Loads and stores of texels. Only this header and those that it includes know buffers from images, and half from
+// float. Here are loads of the colour that was drawn, and the linear light of 8-bit sRGB, which RGBA8 colour holds.
 #pragma once
 
 #include "texels/storage.h"  // first, as it may define `inline`

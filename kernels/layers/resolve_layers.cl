@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// resolve_layers: does the work of resolve_temporal in tiles where pixels may have two layers. A pixel has those of the
-// sample nearest to its picture.
+// resolve_layers: does the work of resolve_temporal in tiles where pixels may have two layers. A pixel has the layers
+// of the sample nearest to its picture.
 //   One layer: as in resolve_temporal, but of texels of two layers it takes the one of its own depth.
 //   The far layer: the same, with samples of the far surface only. It is not rectified.
 //   The near layer: follows the near surface; a sample of the far one counts as one of no colour and no coverage, one

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// turn_records: things stop, start and turn about, and their records of the previous frame with them.
-//   Each that is carried over is compared with the new record nearest to where it comes, of those in the 7x7 cells
-//   around that have its depth. If that one moves otherwise, a record that a sample showed in the previous frame takes
-//   its motion. The place of an older one is not known any more: it no longer counts as thin, and so ends.
+// turn_records: finds things that have stopped, started or turned about, and corrects their previous records.
+//   Each record that is carried over is compared with the new record nearest to its new place, among those in the 7x7
+//   cells around that have its depth. If that one moves differently, a record of age 0 takes its motion. The place of
+//   an older one is then unknown: it no longer counts as thin, and so ends.
 //
 //   params            in      viewports, scales
 //   previous_keys     in      of the previous frame's grid of records

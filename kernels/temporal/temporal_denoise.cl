@@ -5,7 +5,7 @@
 //   s  part of it that the picture shows: min(sum of |t - mean of four neighbours|^2 / sum of v, .7), over 5x5 pixels
 //   t <- mean of the 7x7 pixels, each weighted W bell(d / (s (v + v of the own ones))), where d, the squared distance,
 //        and v are sums over the 3x3 pixels around it and the own ones
-//   Where light is smooth, or noise is less than told, s is small, and texture stays. A pixel of which no channel
+//   Where light is smooth, or noise is less than stated, s is small, and texture stays. A pixel of which no channel
 //   moves keeps its colour bit by bit.
 //   Where the surfaces' albedo is known, all this is done with each channel over max(albedo, 0) + .02, or where that
 //   would be more than 32768, with 32768.

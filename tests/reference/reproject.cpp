@@ -13,7 +13,7 @@
 // coordinates c, as in velocity_from_depth.cpp, and p = clip_to_previous_clip c: 1 / (p.w / matrix(2, 2)).
 // A depth is 1 / distance: the larger the nearer. |dz| takes on each axis the gentler side, so that thin
 // features hide nothing.
-// Source: found by measuring (docs/pipeline.md, tables of `reproject` and of the temporal upscaler).
+// Source: found by measuring (docs/lab/methods.md, docs/lab/temporal.md).
 #include "reproject.h"
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 //   r   .7 + .35 render / output, within [.875, 1]
 //   h   luma weight 1 / max(2, brightest channel)
 //   g   trust of the nearest sample, (1 - reactive) of both frames; 0 if a previous sample is not finite
-// Source: found by measuring (docs/pipeline.md, table of `reproject` and `resolve_reprojected`).
+// Source: found by measuring (docs/lab/methods.md).
 #include <algorithm>
 #include <array>
 #include <cmath>

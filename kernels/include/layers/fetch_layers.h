@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Fetching a layer of pixels of a row where texels of history may have two: where it was, and what it was.
+// Fetches a layer for pixels of a row, if texels of history may have two: finds its place in the previous frame, and
+// its value there.
 #pragma once
 
 #include "bits.h"

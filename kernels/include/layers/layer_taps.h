@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Taps: texels of history as the layers that pixels of a row want have them, one texel of each pixel at a time. And
-// their sums over the 4x4 texels around the pixels' places.
+// Taps: value, coverage and confidence that texels of history have for the layer that a pixel wants, one texel of each
+// pixel of a row at a time; and their sums over the 4x4 texels around the pixels' places.
 #pragma once
 
 #include "layers/constants.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A history of two layers: its texels, and rows of them. Eight pixels see twelve texels of a row between texels, and
-// eight on texels; one pixel sees four. All may lie anywhere and are clamped to the edge.
+// A history of two layers: its texels, and rows of them. Eight pixels read twelve texels of a row if they lie between
+// texels, and eight if they lie on texels; one pixel reads four. All may lie anywhere and are clamped to the edge.
 #pragma once
 
 #include "bits.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The samples of a tile, and the way in which it takes history over if they move alike.
+// The samples of a tile, and the reprojection of the whole tile if they move alike.
 #pragma once
 
 #include "motion/motion_edge.h"
