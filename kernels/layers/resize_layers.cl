@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // resize_layers: resizes the near layer and the states of the history to another output. Runs after resize_history and
 // resize_tiles, in layered tiles only.
-//   The state of a pixel is that of the texel nearest to its centre. Where that has two layers, the near one is read as
-//   resize_history reads the far one, among texels whose near layer is what stands before the depth half-way between
-//   that texel's layers.
+//   The state of a pixel is that of the texel nearest to its centre, stored or not; the near layer's confidence is
+//   scaled and limited as the far one's in resize_history. If that texel has two layers, the near one is read as
+//   resize_history reads the far one, among texels whose near layer is in front of the depth half-way between that
+//   texel's layers.
 //
 //   params             in   extents, places
 //   before             in   the samples of the history's frame
