@@ -18,12 +18,8 @@ import tempfile
 # (page, index of the example): declarations before it; statements go into a function.
 SCENES = {
     ("control.md", 0): """
-        struct Measured {
-          std::uint64_t frame; Extent render_extent; double gpu_ms, cpu_ms, interval_ms; int queued, missed_vsyncs;
-        };
-        std::vector<Measured> timers_that_came_back();
-        extern DynamicViewport viewport;
-        void draw(std::uint64_t frame);""",
+        std::vector<FrameTiming> timers_that_came_back();
+        void draw(std::uint64_t frame, Extent render);""",
     ("control.md", 1): """
         struct Measured { FrameTiming timing; double resolve_ms; std::optional<ContentStatistics> content; };
         std::vector<Measured> timers_that_came_back();
@@ -91,7 +87,7 @@ def main():
             source = os.path.join(folder, "example.cpp")
             with open(source, "w", encoding="utf-8") as file:
                 file.write(program(place, code, headers))
-            run = subprocess.run([cxx, "-std=c++20", "-DCL_TARGET_OPENCL_VERSION=120", "-fsyntax-only",
+            run = subprocess.run([cxx, "-std=c++20", "-DCL_TARGET_OPENCL_VERSION=120", "-fsyntax-only", "-Werror",
                                   *(f"-I{folder}" for folder in folders), source], capture_output=True, text=True)
             if run.returncode != 0:
                 print(f"{name}:\n{run.stderr}")
