@@ -15,12 +15,17 @@
 #   --tests PATTERN         of kernel_tests, as --gtest_filter takes it (default: all)
 #   --tune-cases NAMES      of quincunx-bench --tune (default: all)
 #   --kernels NAME          only these of quincunx-kernel-bench, as its --filter takes them (default: all)
+#   --frames-only           of all this, only frames from OpenGL
+#   --frames N              of each of their runs (default: 200)
+#   --sizes SIZES           of those and of the kernel benchmark (default: "1280x720 1920x1080 3840x2160")
+#   --probe PROGRAM         run first, its output kept: one that prints what the drivers offer for sharing memory
 #   --measure-with COMMAND  before each command that measures: "chrt -f 20" on a machine that others use
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 programs=(kernel_tests service_tests interop_tests quincunx-bench quincunx-kernel-bench quincunx-render)
 build=build/release name="" out="" icd="" minutes=10 pattern="*" pack="" cases="" filter=() measure=()
+frames_only="" probe="" count=200 sizes=(1280x720 1920x1080 3840x2160)
 
 fail() {
   printf '%s\n' "$*" >&2
@@ -28,7 +33,12 @@ fail() {
 }
 
 while (($# > 0)); do
-  [[ "$1" =~ ^--(name|icd|pack|build|out|minutes|tests|tune-cases|kernels|measure-with)$ && $# -ge 2 ]] ||
+  if [[ "$1" == --frames-only ]]; then
+    frames_only=yes
+    shift
+    continue
+  fi
+  [[ "$1" =~ ^--(name|icd|pack|build|out|minutes|tests|tune-cases|kernels|frames|sizes|probe|measure-with)$ && $# -ge 2 ]] ||
     fail "'$1' is no option, or its value is missing; the head of scripts/device_report.sh lists them."
   case "$1" in
     --name) name=$2 ;;
@@ -40,6 +50,9 @@ while (($# > 0)); do
     --tests) pattern=$2 ;;
     --tune-cases) cases=$2 ;;
     --kernels) filter=(--filter "$2") ;;
+    --frames) count=$2 ;;
+    --sizes) read -ra sizes <<<"$2" ;;
+    --probe) probe=$2 ;;
     --measure-with) read -ra measure <<<"$2" ;;
   esac
   shift 2
@@ -47,6 +60,20 @@ done
 for program in "${programs[@]}"; do
   [[ -x "$build/bin/$program" ]] || fail "$build/bin/$program is not there; build it, or name another build by --build."
 done
+
+# hide_semaphores FILE: a library that, loaded first, keeps OpenGL's semaphores from programs, so that the host waits.
+hide_semaphores() {
+  cc -shared -fPIC -o "$1" -xc - <<'C'
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <stdbool.h>
+#include <string.h>
+bool epoxy_has_gl_extension(const char* name) {
+  bool (*real)(const char*) = dlsym(RTLD_NEXT, "epoxy_has_gl_extension");
+  return strcmp(name, "GL_EXT_semaphore_fd") != 0 && real(name);
+}
+C
+}
 
 # What the programs load, the loader, the C library and what finds the drivers with it. Those are the machine's own.
 pack_programs() {
@@ -61,6 +88,7 @@ pack_programs() {
     ldd "${programs[@]/#/$build/bin/}"
     ldconfig -p | grep -E 'lib(EGL|OpenGL|GLdispatch|GLESv2|vulkan)\.so\.[0-9]+ .*x86-64'
   } | grep -oE '/[^ ]+\.so[^ :]*' | sort -u | xargs cp -Lt "$folder/quincunx/lib"
+  hide_semaphores "$folder/quincunx/lib/no_semaphores.so"
   git rev-parse --short HEAD >"$folder/quincunx/commit"
   tar -C "$folder" -caf "$pack" quincunx
   rm -r "$folder"
@@ -141,45 +169,75 @@ say "# $name" '' \
   "$(sed -n 's/^model name[^:]*: /Processor: /p' /proc/cpuinfo | head -n 1), $(nproc) of them; load of the last minute" \
   "$(cut -d ' ' -f 1 /proc/loadavg) as it began."
 block devices.log
+if [[ -n "$probe" ]]; then
+  timeout 60 "$probe" >"$out/probe.log" 2>&1 || true
+  say '' '## What the drivers offer'
+  block probe.log
+fi
 
-# One frame, so that the device's clock is judged before many processes use it at once.
-limited 3 first.log quincunx-render --frames 1 --out "$out/first.png"
-say '' '## Tests' '' '| command | passed | failed | skipped | s | |' '|---|---|---|---|---|---|'
-test_row 25 kernel_tests "--gtest_filter=$pattern"
-test_row 7 service_tests
-test_row 7 interop_tests
-failed=$(sed -n 's/^\[  FAILED  \] \(.*\) (.*ms)$/- `\1`/p' "$out"/*_tests.log)
-[[ -z "$failed" ]] || say '' 'Failed:' '' "$failed"
+if [[ -z "$frames_only" ]]; then
+  # One frame, so that the device's clock is judged before many processes use it at once.
+  limited 3 first.log quincunx-render --frames 1 --out "$out/first.png"
+  say '' '## Tests' '' '| command | passed | failed | skipped | s | |' '|---|---|---|---|---|---|'
+  test_row 25 kernel_tests "--gtest_filter=$pattern"
+  test_row 7 service_tests
+  test_row 7 interop_tests
+  failed=$(sed -n 's/^\[  FAILED  \] \(.*\) (.*ms)$/- `\1`/p' "$out"/*_tests.log)
+  [[ -z "$failed" ]] || say '' 'Failed:' '' "$failed"
 
-prefix=("${measure[@]}")
-limited 28 tune.log quincunx-bench --tune --out "$out" ${cases:+--tune-cases "$cases"}
-grep -q '"passes"' "$out/tune.json" 2>/dev/null && cp "$QUINCUNX_CACHE_DIR"/device_profile-*.json "$out/profile.json"
-say '' '## Tuned'
-told "quincunx-bench --tune${cases:+ --tune-cases $cases}"
-block tune.log
+  prefix=("${measure[@]}")
+  limited 28 tune.log quincunx-bench --tune --out "$out" ${cases:+--tune-cases "$cases"}
+  grep -q '"passes"' "$out/tune.json" 2>/dev/null && cp "$QUINCUNX_CACHE_DIR"/device_profile-*.json "$out/profile.json"
+  say '' '## Tuned'
+  told "quincunx-bench --tune${cases:+ --tune-cases $cases}"
+  block tune.log
 
-sizes=(1280x720 1920x1080 3840x2160)
-limited 12 kernels.log quincunx-kernel-bench --no-peers --output "${sizes[@]}" --scales 0.5 --rounds 5 "${filter[@]}" \
-  --json "$out/kernels.json"
-say '' '## Kernels'
-told "quincunx-kernel-bench --no-peers --output ${sizes[*]} --scales 0.5 --rounds 5${filter[*]:+ ${filter[*]}}"
-block kernels.log
+  limited 12 kernels.log quincunx-kernel-bench --no-peers --output "${sizes[@]}" --scales 0.5 --rounds 5 "${filter[@]}" \
+    --json "$out/kernels.json"
+  say '' '## Kernels'
+  told "quincunx-kernel-bench --no-peers --output ${sizes[*]} --scales 0.5 --rounds 5${filter[*]:+ ${filter[*]}}"
+  block kernels.log
 
-limited 12 bench.log quincunx-bench --quick --scenes courtyard --out "$out/bench"
-say '' '## Speed against error'
-told "quincunx-bench --quick --scenes courtyard"
-block bench.log
+  limited 12 bench.log quincunx-bench --quick --scenes courtyard --out "$out/bench"
+  say '' '## Speed against error'
+  told "quincunx-bench --quick --scenes courtyard"
+  block bench.log
+fi
 
 # The same frames by each way are the same pictures.
 say '' '## Frames from OpenGL'
-frames=(--scene courtyard --method temporal --scale-path random --frames 20)
-for way in gl external copy; do
-  limited 2 "interop_$way.log" quincunx-render --interop "$way" "${frames[@]}" --out "$out/$way/frame.%04d.png"
-  told "quincunx-render --interop $way ${frames[*]}"
-  block "interop_$way.log"
+prefix=("${measure[@]}")
+hidden=$PWD/lib/no_semaphores.so
+[[ -e "$hidden" ]] || hidden=$out/no_semaphores.so
+[[ -e "$hidden" ]] || hide_semaphores "$hidden" || fail "cc, which --pack and this need, is not there."
+share=$((${#frames_only} > 0 ? 6 : 2))
+# frames_by WAY LOG OPTION...: `waits` is `external` without semaphores.
+frames_by() {
+  local way=$1 log=$2 hide=()
+  shift 2
+  [[ "$way" != waits ]] || hide=(env LD_PRELOAD="$hidden")
+  prefix=("${measure[@]}" "${hide[@]}")
+  limited "$share" "$log" quincunx-render --interop "${way/waits/external}" --scene courtyard --method temporal \
+    --scale-path random --frames "$count" "$@"
+}
+for way in gl external waits copy; do
+  frames_by "$way" "pictures_$way.log" --output "${sizes[0]}" --out "$out/$way/frame.%04d.png"
+  told "quincunx-render --interop ${way/waits/external (semaphores hidden)} --scale-path random --frames $count"
+  block "pictures_$way.log"
 done
-for way in gl external; do
+for way in gl external waits; do
   [[ -d "$out/$way" && -d "$out/copy" ]] || continue
   say '' "Pictures of $way and copy: $(diff -rq "$out/$way" "$out/copy" >/dev/null && echo 'the same bits' || echo 'different bits')."
+done
+say '' 'Medians, ms: the host draws and hands over, waits for the frame, takes the picture; then OpenCL events, all passes.' \
+  '`waits` is `external` where no semaphores are found.' '' \
+  '| output | way | draw, submit | wait | present | passes | frames a second |' '|---|---|---|---|---|---|---|'
+for size in "${sizes[@]}"; do
+  for way in copy waits external; do
+    frames_by "$way" "frames_$way.log" --output "$size"
+    say "| $size | $way | $(awk '/^  draw and submit/ { d = $4 } /^  wait for the frame/ { w = $5 }
+      /^  present .*host clock$/ { p = $2 } /OpenCL event$/ { c += $2 } / a second, files included$/ { f = $(NF - 4) }
+      END { printf "%s | %s | %s | %.3f | %s", d, w, p, c, f }' "$out/frames_$way.log") |"
+  done
 done
 printf 'The report: %s\n' "$report" >&2
