@@ -127,16 +127,22 @@ std::vector<std::uint8_t> base64_decoded(std::string_view text, const std::strin
   return bytes;
 }
 
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
 std::vector<std::uint8_t> read_data_uri(std::string_view uri, const std::string& what) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos) {
     throw GltfError(what + " has a data URI without a comma; expected data:<type>;base64,<data>");
   }
-  const std::string_view head = uri.substr(0, comma);
-  const std::string_view body = uri.substr(comma + 1);
-  if (head.ends_with(";base64")) return base64_decoded(body, what);
-  const std::string text = percent_decoded(body, what);
-  return {text.begin(), text.end()};
+  std::string text = percent_decoded(uri.substr(comma + 1), what);
+  if (!lower_case(uri.substr(0, comma)).ends_with(";base64")) return {text.begin(), text.end()};
+  std::erase_if(text, [](unsigned char c) { return std::isspace(c) != 0; });  // some break their lines
+  return base64_decoded(text, what);
 }
 
 // Reads the whole of a regular file. `what` begins the sentence of the GltfError: "image 2".
@@ -185,8 +191,11 @@ GltfContainer read_gltf_container(const std::filesystem::path& path) {
 // Returns the bytes behind a URI: data (base64 or percent encoded) or a file relative to `folder`. Throws GltfError.
 std::vector<std::uint8_t> read_uri(const std::filesystem::path& folder, const std::string& uri,
                                    const std::string& what) {
-  if (uri.starts_with("data:")) return read_data_uri(uri, what);
-  const std::string relative = percent_decoded(uri, what);
+  if (holds_data(uri)) return read_data_uri(uri, what);
+  std::string relative = uri;
+  std::replace(relative.begin(), relative.end(), '\\', '/');  // never part of a URI, but of paths on Windows
+  std::error_code unreadable;
+  if (!std::filesystem::exists(folder / relative, unreadable)) relative = percent_decoded(relative, what);
   if (relative.empty()) throw GltfError(what + " has an empty URI; it must name a file or hold data");
   if (relative.find('\0') != std::string::npos) {
     throw GltfError(what + " has a URI with a zero byte; it must name a file");
@@ -292,6 +301,10 @@ void check_graph(const tinygltf::Model& model) {
 
 void GltfDocument::warn(const std::string& sentence) {
   if (warned_.insert(sentence).second) spdlog::warn("{}: {}", path.string(), sentence);
+}
+
+bool holds_data(std::string_view uri) {
+  return lower_case(uri.substr(0, 5)) == "data:";
 }
 
 std::string described(const char* kind, int index, const std::string& name) {

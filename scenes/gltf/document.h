@@ -15,6 +15,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace quincunx::scenes {
@@ -53,6 +54,8 @@ CheckedJson checked_gltf_json(const std::string& text);
 
 // Returns "accessor 3" or "mesh 1 'Suzanne'".
 std::string described(const char* kind, int index, const std::string& name);
+
+bool holds_data(std::string_view uri);  // rather than naming a file
 
 // Returns the encoded bytes of an image. Throws GltfError when they cannot be had.
 std::vector<std::uint8_t> image_bytes(const GltfDocument& document, int image);

@@ -212,6 +212,9 @@ class PrimitiveReader {
     const FloatArray positions = attribute("POSITION", {3});
     const FloatArray normals = attribute("NORMAL", {3});
     const FloatArray uvs = attribute(uv_name, {2});
+    const auto colour = source_.attributes.find("COLOR_0");  // integers of it are always normalised
+    if (colour != source_.attributes.end())
+      document_.model.accessors[static_cast<std::size_t>(colour->second)].normalized = true;
     const FloatArray colours = attribute("COLOR_0", {3, 4});
     const std::size_t count = positions.size();
     check_size("NORMAL", normals, count);

@@ -60,7 +60,7 @@ struct StbDeleter {
 
 DecodedImage decode_image(const GltfDocument& document, int image) {
   const tinygltf::Image& source = document.model.images[static_cast<std::size_t>(image)];
-  const bool is_file = source.bufferView < 0 && !source.uri.starts_with("data:");
+  const bool is_file = source.bufferView < 0 && !holds_data(source.uri);
   const std::string who =
       described("image", image, source.name) + (is_file ? " ('" + source.uri + "')" : std::string());
   std::vector<std::uint8_t> bytes = image_bytes(document, image);

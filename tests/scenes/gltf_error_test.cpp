@@ -277,7 +277,8 @@ TEST_F(GltfErrors, Buffers) {
                  {"buffer 0", "truncated", "3 bytes of the 10"});
   expect_refused(buffer({{"byteLength", 10}, {"uri", "data:;base64,A*AA"}}), {"buffer 0", "base64"});
   expect_refused(buffer({{"byteLength", 10}, {"uri", "a%2"}}), {"buffer 0", "'%'"});
-  for (const char* uri : {"http://x/y", "../a.bin", "b/../../a.bin", "%2e%2e/a.bin", "/etc/hostname"})
+  for (const char* uri :
+       {"http://x/y", "../a.bin", "b/../../a.bin", "%2e%2e/a.bin", "..\\a.bin", "/etc/hostname"})
     expect_refused(buffer({{"byteLength", 1}, {"uri", uri}}), {"buffer 0", "only files beside the glTF"});
 }
 

@@ -63,6 +63,27 @@ TEST_F(GltfMesh, AllContainersHoldTheSame) {
   }
 }
 
+// Names as they stand, with a % or the backslashes of Windows; data with line breaks or percent-encoded.
+TEST_F(GltfMesh, UrisAsExportersWriteThem) {
+  GltfFile file;
+  file.triangle();
+  std::filesystem::create_directories(folder_.file("parts"));
+  for (const char* name : {"100% real.bin", "a%20b.bin", "parts/c d.bin"})
+    write_bytes(folder_.file(name), file.binary.data(), file.binary.size());
+  std::string lines, encoded;
+  for (const char c : base64(file.binary)) {
+    encoded += c == '=' ? "%3D" : c == '+' ? "%2B" : c == '/' ? "%2f" : std::string(1, c);
+    lines += std::string(1, c) + "\r\n";
+  }
+  for (const std::string& uri :
+       {std::string("100% real.bin"), std::string("a%20b.bin"), std::string("parts\\c%20d.bin"),
+        "data:;base64," + lines, "DATA:application/octet-stream;BASE64," + encoded}) {
+    file.root["buffers"] = json::array({{{"byteLength", file.binary.size()}, {"uri", uri}}});
+    const Mesh mesh = mesh_of(file);
+    EXPECT_EQ(corner_positions(mesh), kTriangle) << uri;
+  }
+}
+
 TEST_F(GltfMesh, ByteOrderMarkIsSkipped) {
   GltfFile file;
   file.triangle();
@@ -132,16 +153,18 @@ TEST_F(GltfMesh, FlatNormalsOfTinyTriangles) {
 TEST_F(GltfMesh, ColoursFloatAndNormalised) {
   GltfFile file;
   const int bytes = file.accessor<std::uint8_t>({255, 0, 51, 255, 0, 0, 255, 0, 0}, 3, kUByte, true);
+  const int unmarked = file.accessor<std::uint8_t>({255, 0, 51, 255, 0, 0, 255, 0, 0}, 3, kUByte);
   const int shorts =
       file.accessor<std::uint16_t>({65535, 0, 13107, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4, kUShort, true);
   const int floats = file.floats({1, 0, 0.2f, 0.5f, 0, 0, 0, 0, 0, 0, 0, 0}, 4);
   const int positions = file.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
-  for (const int colour : {bytes, shorts, floats}) {
+  for (const int colour : {bytes, shorts, floats, unmarked}) {
     file.show({{"attributes", {{"POSITION", positions}, {"COLOR_0", colour}}}});
   }
   const Scene scene = load(file);
-  ASSERT_EQ(scene.meshes.size(), 3u);
+  ASSERT_EQ(scene.meshes.size(), 4u);
   EXPECT_EQ(scene.meshes[0].vertices[0].colour, glm::vec4(1, 0, 0.2f, 1));
+  EXPECT_EQ(scene.meshes[3].vertices[0].colour, glm::vec4(1, 0, 0.2f, 1));
   EXPECT_EQ(scene.meshes[1].vertices[0].colour, glm::vec4(1, 0, 0.2f, 0));
   EXPECT_EQ(scene.meshes[2].vertices[0].colour, glm::vec4(1, 0, 0.2f, 0.5f));
 }
