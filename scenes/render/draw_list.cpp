@@ -14,6 +14,12 @@ float squared_distance(const glm::vec3& a, const glm::vec3& b) {
   return glm::dot(d, d);
 }
 
+// Whether the winding of its triangles is reversed: it may change from frame to frame.
+bool is_mirrored(const InstanceData& data) {
+  return glm::dot(glm::vec3(data.world[0]), glm::cross(glm::vec3(data.world[1]), glm::vec3(data.world[2]))) <
+         0;
+}
+
 }  // namespace
 
 void DrawList::append(std::vector<Batch>& batches, const Item& item, const InstanceData& data) {
@@ -49,8 +55,9 @@ void DrawList::build_casters(const SceneLayout& layout, const std::vector<Instan
     append(opaque_, item, placed[item.instance]);
 }
 
-void DrawList::collect(const SceneLayout& layout, const std::vector<Bounds>& boxes, const Frustum& frustum,
-                       const glm::vec3& eye, float least_span) {
+void DrawList::collect(const SceneLayout& layout, const std::vector<InstanceData>& placed,
+                       const std::vector<Bounds>& boxes, const Frustum& frustum, const glm::vec3& eye,
+                       float least_span) {
   items_.clear();
   blended_items_.clear();
   for (const Piece& piece : layout.pieces) {
@@ -67,7 +74,7 @@ void DrawList::collect(const SceneLayout& layout, const std::vector<Bounds>& box
     item.range = piece.part;
     item.program = piece.program;
     item.light_set = piece.light_set;
-    item.mirrored = instance.mirrored;
+    item.mirrored = is_mirrored(placed[static_cast<std::size_t>(piece.instance)]);
     item.instance = static_cast<std::uint32_t>(piece.instance);
     item.distance = to_centre;
     if (features.blend) {
@@ -99,7 +106,7 @@ void DrawList::build_view(const SceneLayout& layout, const std::vector<InstanceD
   instances_.clear();
   opaque_.clear();
   blended_.clear();
-  collect(layout, boxes, frustum, eye, least_span);
+  collect(layout, placed, boxes, frustum, eye, least_span);
   group_repeated_parts(layout.parts.size());
   std::sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
     return std::tie(a.stage, a.group_distance, a.range, a.program, a.light_set, a.mirrored, a.distance,

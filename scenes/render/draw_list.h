@@ -52,8 +52,9 @@ class DrawList {
     std::uint32_t instance = 0;
   };
 
-  void collect(const SceneLayout& layout, const std::vector<Bounds>& boxes, const Frustum& frustum,
-               const glm::vec3& eye, float least_span);
+  void collect(const SceneLayout& layout, const std::vector<InstanceData>& placed,
+               const std::vector<Bounds>& boxes, const Frustum& frustum, const glm::vec3& eye,
+               float least_span);
   void group_repeated_parts(std::size_t parts);
   void append(std::vector<Batch>& batches, const Item& item, const InstanceData& data);
   void merge_blended(const std::vector<InstanceData>& placed, const glm::vec3& eye,

@@ -248,7 +248,6 @@ class Layouter {
       placed.mesh = instance.mesh;
       placed.moves = static_cast<bool>(instance.motion);
       placed.transform = placed.moves ? instance.motion(0) : instance.transform;
-      placed.mirrored = glm::determinant(glm::mat3(placed.transform)) < 0;
       placed.reach = transformed(mesh_box(placed), placed.transform);
       layout_.instances.push_back(placed);
     }

@@ -62,7 +62,6 @@ struct MeshRange {
 struct PlacedInstance {
   int mesh = 0;  // index into SceneLayout::meshes
   bool moves = false;
-  bool mirrored = false;  // negative determinant: the winding is reversed
   bool casts_shadow = false;
   glm::mat4 transform{1};  // where it stands, if it does not move; else where it is at time 0
   Bounds reach;            // world bounds; of a moving one over the whole duration

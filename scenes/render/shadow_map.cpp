@@ -65,15 +65,17 @@ Result<ShadowMap> ShadowMap::create(const Scene& scene, const SceneLayout& layou
   if (!layout.shadow.enabled) return map;
   for (const Mesh& mesh : scene.meshes) {
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-    map.mask_of_mesh_.push_back(material.alpha_mode == AlphaMode::kMask &&
-                                material.base_colour_texture.texture >= 0);
+    map.program_of_mesh_.push_back(material.alpha_mode != AlphaMode::kMask    ? kSolid
+                                   : material.base_colour_texture.texture < 0 ? kCutOut
+                                                                              : kCutOutByTexture);
   }
-  Result<gl::Program> solid = link_program("shadow.vert.glsl", "nothing.frag.glsl", {});
-  if (!solid.ok()) return solid.status();
-  map.solid_ = std::move(solid).value();
-  Result<gl::Program> cut_out = link_program("shadow.vert.glsl", "shadow.frag.glsl", {"MASK"});
-  if (!cut_out.ok()) return cut_out.status();
-  map.cut_out_ = std::move(cut_out).value();
+  const std::vector<std::string> defines[] = {{}, {"MASK"}, {"MASK", "TEXTURED"}};
+  for (std::size_t p = 0; p < map.programs_.size(); ++p) {
+    Result<gl::Program> program =
+        link_program("shadow.vert.glsl", p == kSolid ? "nothing.frag.glsl" : "shadow.frag.glsl", defines[p]);
+    if (!program.ok()) return program.status();
+    map.programs_[p] = std::move(program).value();
+  }
   map.texture_ = depth_texture();
   Result<gl::Framebuffer> framebuffer = depth_framebuffer(map.texture_.get());
   if (!framebuffer.ok()) return framebuffer.status();
@@ -133,8 +135,8 @@ void ShadowMap::draw(const SceneLayout& layout, const GpuScene& gpu, GLuint fram
   glPolygonOffset(kSlopeBias, kConstantBias);
   for (const Batch& batch : list_.opaque()) {
     const auto mesh = static_cast<std::size_t>(batch.range);
-    glUseProgram(mask_of_mesh_[mesh] ? cut_out_.get() : solid_.get());
-    if (mask_of_mesh_[mesh]) gpu.bind_material(layout.meshes[mesh].material);
+    glUseProgram(programs_[program_of_mesh_[mesh]].get());
+    if (program_of_mesh_[mesh] != kSolid) gpu.bind_material(layout.meshes[mesh].material);
     glDisable(GL_CULL_FACE);  // open meshes cast shadows from both sides
     draw_mesh(layout.meshes[mesh], instances.get(), offset, batch.first, batch.count);
   }

@@ -42,9 +42,9 @@ class ShadowMap {
   gl::Framebuffer framebuffer_;
   gl::Texture still_texture_;  // only those that stand still, where others move: the start of each update
   gl::Framebuffer still_framebuffer_;
-  gl::Program solid_;
-  gl::Program cut_out_;
-  std::vector<bool> mask_of_mesh_;
+  enum Caster : std::uint8_t { kSolid, kCutOut, kCutOutByTexture };
+  std::array<gl::Program, 3> programs_;  // by Caster
+  std::vector<Caster> program_of_mesh_;
   StreamBuffer still_instances_;
   StreamBuffer moving_instances_;
   DrawList list_;

@@ -132,6 +132,27 @@ TEST_F(LightingTest, ShadowLiesUnderItsCasterAndFollowsIt) {
   EXPECT_EQ(darkest_column(picture_of(scene)), -1);
 }
 
+TEST_F(LightingTest, WhatIsCutOutCastsNoShadow) {
+  Scene scene = floor_scene();
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].alpha_mode = AlphaMode::kMask;
+  scene.meshes[1].material = 1;
+  scene.instances.push_back({1, lying(at(0, 1, 0)), {}});
+  const auto darkest = [&] {
+    const Picture picture = picture_of(scene);
+    float least = 1;
+    for (int i = 0; i < kSize.area(); ++i)
+      least = std::min(least, picture.rgb(i % kSize.width, i / kSize.width).g);
+    return least;
+  };
+  scene.materials[1].base_colour.a = 0.4f;
+  EXPECT_GT(darkest(), 0.5f) << "by its factor";
+  scene.materials[1].base_colour.a = 1;
+  for (Vertex& vertex : scene.meshes[1].vertices)
+    vertex.colour.a = 0.4f;
+  EXPECT_GT(darkest(), 0.5f) << "by its vertices";
+}
+
 TEST_F(LightingTest, DistantHillsTakeNoTexelsFromTheShadowMap) {
   Scene scene = floor_scene();
   scene.instances.push_back({1, lying(at(0, 1, 0)), {}});

@@ -264,6 +264,20 @@ TEST_F(RenderTest, BackFacesAreHiddenUnlessDoubleSided) {
   EXPECT_GT(red_pixels(), 50);
 }
 
+TEST_F(RenderTest, AMotionMayMirror) {
+  Scene scene = marker_scene();
+  scene.instances[0].motion = [place = scene.instances[0].transform](double seconds) {
+    return glm::scale(place, glm::vec3(1 - 2 * seconds, 1, 1));
+  };
+  Renderer renderer = renderer_of(scene);
+  for (const double seconds : {0.0, 1.0}) {
+    const Picture picture = draw(renderer, view_of_size(kSize, {}, seconds, seconds), kSize);
+    EXPECT_GT(
+        std::count_if(picture.depth.begin(), picture.depth.end(), [](float depth) { return depth > 0; }), 50)
+        << seconds;
+  }
+}
+
 TEST_F(RenderTest, AspectIsThePicturesWhateverTheViewport) {
   Renderer renderer = renderer_of(marker_scene());
   FrameView view = view_of_size({kSize.width / 2, kSize.height});  // half the columns of the same picture

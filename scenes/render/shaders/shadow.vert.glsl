@@ -1,11 +1,15 @@
-// shadow.vert: meshes as the sun sees them. Options: MASK.
+// shadow.vert: meshes as the sun sees them. Options: MASK, TEXTURED (with MASK).
 #include "frame.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 2) in vec2 uv;
+layout(location = 3) in vec4 colour;
 layout(location = 4) in mat3x4 world_rows;
 
 #ifdef MASK
+out float v_alpha;
+#endif
+#ifdef TEXTURED
 out vec2 v_uv;
 #endif
 
@@ -20,6 +24,9 @@ void main() {
 #endif
   gl_Position = CLIP(vec4(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y, at.z, 1.0));
 #ifdef MASK
+  v_alpha = colour.a;
+#endif
+#ifdef TEXTURED
   v_uv = uv;
 #endif
 }
