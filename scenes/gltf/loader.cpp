@@ -24,8 +24,8 @@ constexpr glm::vec3 kSunDirection{-0.45f, -0.75f, -0.5f};  // from the upper rig
 // White paper under this irradiance has radiance 3.2, about what tone mapping still shows as bright.
 constexpr float kBrightIrradiance = 10;
 
-// Without a range a light reaches this many diagonals of the scene.
-constexpr float kReachInDiagonals = 4;
+// Without a range a light reaches so many times as far as the scene's far side.
+constexpr float kReach = 4;
 
 // How much of the day's sky is left where the file lights the scene with lamps alone.
 constexpr float kNightSky = 0.1f;
@@ -94,8 +94,10 @@ void read_lights(GltfDocument& document, const NodeTree& tree, const std::vector
       scene.sun.direction = glm::normalize(direction);
       scene.sun.irradiance = power_of(light);
     } else if (scene.lights.size() < static_cast<std::size_t>(Scene::kMaxPointLights)) {
-      const float range = light.range > 0 ? static_cast<float>(light.range) : kReachInDiagonals * diagonal;
-      scene.lights.push_back({glm::vec3(world[3]), power_of(light), range});
+      const glm::vec3 place(world[3]);
+      const float far_side = diagonal + glm::distance(place, 0.5f * bounds.low + 0.5f * bounds.high);
+      const float range = light.range > 0 ? static_cast<float>(light.range) : kReach * far_side;
+      scene.lights.push_back({place, power_of(light), range});
     } else {
       document.warn(fmt::format("only the first {} point lights can shine", Scene::kMaxPointLights));
     }

@@ -239,6 +239,16 @@ TEST_F(GltfLook, ALampAloneIsNotOutshoneByASun) {
   EXPECT_LT(scene.sky.zenith.b, scenes::Sky{}.zenith.b);
 }
 
+TEST_F(GltfLook, AFarLampReachesASmallThing) {
+  GltfFile file;
+  file.triangle();
+  file.root["extensions"] = lights({{{"type", "point"}}});
+  light_node(file, 0, {{"translation", {0, 300, 400}}});
+  const Scene scene = load(file);
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_GT(scene.lights[0].range, 1500);  // what is lost at a third of it is an eightieth
+}
+
 TEST_F(GltfLook, PhotometricLightsAreExposedDown) {
   GltfFile file;
   file.triangle();
