@@ -10,6 +10,8 @@
 namespace quincunx::scenes {
 namespace {
 
+constexpr double kRounding = 1e-4;  // that products of single-precision matrices leave where 0 or 1 is right
+
 glm::vec4 normalised(const glm::vec4& value) {
   const float length = glm::length(value);
   return length > 0 ? value / length : glm::vec4(0, 0, 0, 1);
@@ -24,11 +26,11 @@ glm::vec4 slerp(const glm::vec4& from, const glm::vec4& to, float part) {
   return normalised({q.x, q.y, q.z, q.w});
 }
 
-glm::mat4 composed(const glm::vec3& translation, const glm::vec4& rotation, const glm::vec3& scale) {
-  glm::mat4 matrix = glm::mat4_cast(quat_of(rotation));
+glm::dmat4 composed(const glm::dvec3& translation, const glm::vec4& rotation, const glm::vec3& scale) {
+  glm::dmat4 matrix(glm::mat4_cast(quat_of(rotation)));
   for (int c = 0; c < 3; ++c)
-    matrix[c] *= scale[c];
-  matrix[3] = glm::vec4(translation, 1);
+    matrix[c] *= static_cast<double>(scale[c]);
+  matrix[3] = glm::dvec4(translation, 1);
   return matrix;
 }
 
@@ -107,16 +109,19 @@ void NodeTree::read_pose(const tinygltf::Node& source, int index) {
   const auto copy = [](const std::vector<double>& from, float* to) {
     std::transform(from.begin(), from.end(), to, [](double value) { return static_cast<float>(value); });
   };
-  copy(source.translation, &node.translation[0]);
+  std::copy(source.translation.begin(), source.translation.end(), &node.translation[0]);
   copy(source.rotation, &node.rotation[0]);
   copy(source.scale, &node.scale[0]);
   node.rotation = normalised(node.rotation);
   node.has_matrix = !source.matrix.empty();
   node.matrix = composed(node.translation, node.rotation, node.scale);
   if (!node.has_matrix) return;
-  copy(source.matrix, &node.matrix[0][0]);
-  const glm::vec4 last(node.matrix[0][3], node.matrix[1][3], node.matrix[2][3], node.matrix[3][3]);
-  if (last != glm::vec4(0, 0, 0, 1)) {
+  std::copy(source.matrix.begin(), source.matrix.end(), &node.matrix[0][0]);
+  for (int c = 0; c < 4; ++c) {
+    const double last = c == 3 ? 1 : 0;
+    const bool is_rounded = std::abs(node.matrix[c][3] - last) <= kRounding;
+    node.matrix[c][3] = last;
+    if (is_rounded) continue;
     throw GltfError(fmt::format(
         "{} has a 'matrix' whose last row is not 0 0 0 1; it must be a translation, rotation and scale",
         described("node", index, source.name)));
@@ -190,7 +195,7 @@ int NodeTree::read_track(const GltfDocument& document, const tinygltf::Animation
   return static_cast<int>(tracks_.size()) - 1;
 }
 
-glm::mat4 NodeTree::local(const Node& node, double seconds) const {
+glm::dmat4 NodeTree::local(const Node& node, double seconds) const {
   if (std::all_of(node.tracks.begin(), node.tracks.end(), [](int track) { return track < 0; })) {
     return node.matrix;
   }
@@ -198,11 +203,23 @@ glm::mat4 NodeTree::local(const Node& node, double seconds) const {
     const int track = node.tracks[path];
     return track < 0 ? rest : tracks_[static_cast<std::size_t>(track)].at(seconds);
   };
-  return composed(glm::vec3(value(kTranslation, glm::vec4(node.translation, 0))),
+  const bool stays = node.tracks[kTranslation] < 0;
+  return composed(stays ? node.translation : glm::dvec3(value(kTranslation, glm::vec4(0))),
                   value(kRotation, node.rotation), glm::vec3(value(kScale, glm::vec4(node.scale, 0))));
 }
 
-glm::mat4 NodeTree::world(int node_index, double seconds) const {
+glm::mat4 NodeTree::world(int node, double seconds, const glm::dmat4& node_from_mesh) const {
+  glm::dmat4 world = of_file(node, seconds) * node_from_mesh;
+  world[3] -= glm::dvec4(origin_, 0);
+  return glm::mat4(world);
+}
+
+void NodeTree::come_near(int node, const glm::dmat4& node_from_mesh) {
+  const glm::dvec3 place((of_file(node, 0) * node_from_mesh)[3]);
+  if (glm::length(place) > kFar) origin_ = place;
+}
+
+glm::dmat4 NodeTree::of_file(int node_index, double seconds) const {
   const Node& wanted = nodes_[static_cast<std::size_t>(node_index)];
   double time = duration_ > 0 ? std::fmod(seconds, duration_) : 0.0;
   if (time < 0) time += duration_;
@@ -218,8 +235,8 @@ glm::mat4 NodeTree::world(int node_index, double seconds) const {
   for (const int index : order_) {
     const Node& node = nodes_[static_cast<std::size_t>(index)];
     if (!node.animated) continue;
-    const glm::mat4 own = local(node, time);
-    glm::mat4& world = moment.worlds[static_cast<std::size_t>(index)];
+    const glm::dmat4 own = local(node, time);
+    glm::dmat4& world = moment.worlds[static_cast<std::size_t>(index)];
     if (node.parent < 0) {
       world = own;
     } else {

@@ -59,6 +59,8 @@ FloatArray read_floats(const GltfDocument& document, int accessor, std::initiali
 std::optional<Mesh> read_primitive(GltfDocument& document, int mesh, int primitive,
                                    const GltfMaterials& materials);
 
+constexpr double kFar = 4096;  // metres; single precision tells half a millimetre there
+
 enum class Interpolation : std::uint8_t { kStep, kLinear, kCubicSpline };
 
 // The values of one property over time; clamped to the first and the last key.
@@ -81,17 +83,24 @@ class NodeTree {
   double duration() const { return duration_; }  // seconds; 0: nothing moves
   bool is_animated(int node) const { return nodes_[static_cast<std::size_t>(node)].animated; }
 
-  // Returns world from node. Time runs round: `duration()` seconds are 0 seconds again. The last two times of all nodes
-  // are kept, so that a frame and the one before cost as much as there are nodes, however deep these are.
-  glm::mat4 world(int node, double seconds) const;
+  // Returns world from mesh, given node from mesh. Time runs round: `duration()` seconds are 0 seconds again. The last
+  // two times of all nodes are kept, so that a frame and the one before cost as much as there are nodes, however deep
+  // these are.
+  glm::mat4 world(int node, double seconds, const glm::dmat4& node_from_mesh = glm::dmat4(1)) const;
+
+  // Makes the place of a mesh at time 0 the world's origin where it is far from the file's: maps, buildings and tiles
+  // of the globe stand at their coordinates.
+  void come_near(int node, const glm::dmat4& node_from_mesh);
 
  private:
+  glm::dmat4 of_file(int node, double seconds) const;
+
   enum Path : std::uint8_t { kTranslation, kRotation, kScale };
   struct Node {
     int parent = -1;
-    glm::mat4 matrix{1};  // parent from node, where nothing animates the node itself
-    glm::mat4 still{1};   // world from node at time 0
-    glm::vec3 translation{0};
+    glm::dmat4 matrix{1};  // parent from node, where nothing animates the node itself
+    glm::dmat4 still{1};   // the file's world from node at time 0
+    glm::dvec3 translation{0};
     glm::vec4 rotation{0, 0, 0, 1};
     glm::vec3 scale{1};
     std::array<int, 3> tracks = {-1, -1, -1};  // per Path
@@ -103,11 +112,11 @@ class NodeTree {
   void read_animation(GltfDocument& document, int index);
   int read_track(const GltfDocument& document, const tinygltf::Animation& animation, int sampler, Path path,
                  const std::string& who);
-  glm::mat4 local(const Node& node, double seconds) const;
+  glm::dmat4 local(const Node& node, double seconds) const;
 
   struct Moment {
     double seconds = std::numeric_limits<double>::quiet_NaN();
-    std::vector<glm::mat4> worlds;  // of all animated nodes
+    std::vector<glm::dmat4> worlds;  // of all animated nodes
   };
 
   std::vector<Node> nodes_;
@@ -117,6 +126,7 @@ class NodeTree {
   mutable std::size_t oldest_ = 0;
   std::vector<Track> tracks_;
   double duration_ = 0;
+  glm::dvec3 origin_{0};
 };
 
 }  // namespace quincunx::scenes

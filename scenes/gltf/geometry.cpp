@@ -305,8 +305,7 @@ FloatArray read_floats(const GltfDocument& document, int accessor_index,
   const Source source(document, accessor_index, use);
   const auto& [accessor, who] = source;
   FloatArray result;
-  const bool is_matrix = accessor.type > TINYGLTF_TYPE_VEC4 && accessor.type != TINYGLTF_TYPE_SCALAR;
-  if (!is_matrix)  // nothing that is read here is one
+  if (accessor.type != TINYGLTF_TYPE_MAT2 && accessor.type != TINYGLTF_TYPE_MAT3)  // are never read
     result.components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
   if (std::find(components.begin(), components.end(), result.components) == components.end()) {
     throw GltfError(fmt::format("{} has the wrong 'type'; elements of {} components are needed", who,

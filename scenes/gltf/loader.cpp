@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -226,9 +228,14 @@ class SceneReader {
             "the meshes have more than {} vertices and indices in all, which is the limit", kMaxVertices));
       }
       place->second.push_back(static_cast<int>(scene_.meshes.size()));
-      mesh_bounds_.push_back(bounds_of(*read));
-      check_extent(mesh_bounds_.back(),
-                   described("mesh", mesh, model_.meshes[static_cast<std::size_t>(mesh)].name));
+      const Bounds box = bounds_of(*read);
+      check_extent(box, described("mesh", mesh, model_.meshes[static_cast<std::size_t>(mesh)].name));
+      const glm::vec3 middle = 0.5f * (box.low + box.high);
+      const glm::vec3 centre = glm::length(glm::dvec3(middle)) > kFar ? middle : glm::vec3(0);
+      for (Vertex& vertex : read->vertices)
+        vertex.position -= centre;
+      mesh_centres_.emplace_back(centre);
+      mesh_bounds_.push_back({box.low - centre, box.high - centre});
       scene_.meshes.push_back(std::move(*read));
     }
     return place->second;
@@ -242,13 +249,35 @@ class SceneReader {
     }
   }
 
+  // What places the meshes of a node: itself, or of a skinned one, whose own transform means nothing, the first joint.
+  struct Place {
+    int node = 0;
+    glm::dmat4 from_mesh{1};
+  };
+
+  Place place_of(int node) {
+    const tinygltf::Node& source = model_.nodes[static_cast<std::size_t>(node)];
+    if (source.skin < 0) return {node};
+    document_.warn(described("node", node, source.name) +
+                   " is skinned; it keeps its bind pose and follows its first joint");
+    const tinygltf::Skin& skin = model_.skins[static_cast<std::size_t>(source.skin)];
+    if (skin.joints.empty()) return {node};
+    Place place{skin.joints[0]};
+    if (skin.inverseBindMatrices < 0) return place;
+    const FloatArray matrices =
+        read_floats(document_, skin.inverseBindMatrices, {16},
+                    "inverseBindMatrices of " + described("skin", source.skin, skin.name));
+    place.from_mesh = glm::dmat4(glm::make_mat4(matrices.values.data()));
+    return place;
+  }
+
   bool moves(int node) const { return tree_->duration() > 0 && tree_->is_animated(node); }
 
   void add_instances(int node) {
     const tinygltf::Node& source = model_.nodes[static_cast<std::size_t>(node)];
     if (source.mesh < 0) return;
     const std::string who = described("node", node, source.name);
-    if (source.skin >= 0) document_.warn(who + " is skinned; it stands in its bind pose");
+    const Place place = place_of(node);
     const auto& of_mesh = model_.meshes[static_cast<std::size_t>(source.mesh)].weights;
     const std::vector<double>& weights = source.weights.empty() ? of_mesh : source.weights;
     if (std::any_of(weights.begin(), weights.end(), [](double weight) { return weight != 0; }))
@@ -262,13 +291,18 @@ class SceneReader {
       instance.mesh = mesh;
       instance.name =
           !source.name.empty() ? source.name : model_.meshes[static_cast<std::size_t>(source.mesh)].name;
-      instance.transform = tree_->world(node, 0);
+      const glm::dmat4 from_mesh =
+          glm::translate(place.from_mesh, mesh_centres_[static_cast<std::size_t>(mesh)]);
+      if (scene_.instances.empty()) tree_->come_near(place.node, from_mesh);
+      instance.transform = tree_->world(place.node, 0, from_mesh);
       if (!is_sane(instance.transform)) {
         throw GltfError(fmt::format("{} has a transform with values beyond {:g}, which cannot be drawn", who,
                                     kMaxCoordinate));
       }
-      if (moves(node)) {
-        instance.motion = [tree = tree_, node](double seconds) { return tree->world(node, seconds); };
+      if (moves(place.node)) {
+        instance.motion = [tree = tree_, node = place.node, from_mesh](double seconds) {
+          return tree->world(node, seconds, from_mesh);
+        };
       }
       scene_.instances.push_back(std::move(instance));
     }
@@ -350,10 +384,11 @@ class SceneReader {
 
   GltfDocument document_;
   const tinygltf::Model& model_;
-  std::shared_ptr<const NodeTree> tree_;
+  std::shared_ptr<NodeTree> tree_;
   GltfMaterials materials_;
   std::map<int, std::vector<int>> meshes_;  // the scene's meshes, by mesh of the file
   std::vector<Bounds> mesh_bounds_;         // by mesh of the scene
+  std::vector<glm::dvec3> mesh_centres_;    // by mesh of the scene: what its vertices are relative to
   std::size_t vertices_ = 0;
   Scene scene_;
 };

@@ -3,9 +3,9 @@
 //
 // Read: meshes (triangles, strips, fans), node hierarchy with TRS or matrices, node animation (step, linear,
 // cubic spline), cameras, metallic-roughness materials with textures, KHR_texture_transform,
-// KHR_materials_unlit, KHR_materials_emissive_strength, KHR_lights_punctual, alpha modes. Not read: skins and
-// morph targets (a skinned mesh stands in its bind pose). tinygltf trusts files, so every index, size and
-// offset is checked here first.
+// KHR_materials_unlit, KHR_materials_emissive_strength, KHR_lights_punctual, alpha modes. Not read: morph
+// targets, and skins but for their first joint, which the mesh follows in its bind pose. tinygltf trusts files, so
+// every index, size and offset is checked here first.
 #pragma once
 
 #include <string>

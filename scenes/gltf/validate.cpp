@@ -62,6 +62,7 @@ const char* const kSchema = R"({
   "samplers": ["sampler", {
     "magFilter": "choice 9728 9729", "minFilter": "choice 9728 9729 9984 9985 9986 9987",
     "wrapS": "choice 33071 33648 10497", "wrapT": "choice 33071 33648 10497"}],
+  "skins": ["skin", {"joints!": "indices nodes", "inverseBindMatrices": "index accessors"}],
   "animations": ["animation", {
     "channels!": ["channel", {"sampler!": "count 0", "target!": {"node": "index nodes", "path!": "string"}}],
     "samplers!": ["sampler", {

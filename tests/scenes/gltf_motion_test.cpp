@@ -92,6 +92,65 @@ TEST_F(GltfMotion, TransformsMultiplyDownTheTree) {
   expect_near(moved(scene.instances[0].transform, {1, 1, 1}), {6, 8, 14});
 }
 
+TEST_F(GltfMotion, RoundedMatricesAreAffine) {
+  GltfFile file;
+  const auto node = static_cast<std::size_t>(file.triangle());
+  file.root["nodes"][node]["matrix"] = {1, 0, 0, 1e-7, 0, 1, 0, 0, 0, 0, 1, 0, 4, 5, 6, 0.9999999};
+  const glm::mat4 matrix = load(file).instances.at(0).transform;
+  EXPECT_EQ(glm::transpose(matrix)[3], glm::vec4(0, 0, 0, 1));
+  expect_near(moved(matrix, {1, 1, 1}), {5, 6, 7});
+}
+
+// Its own transform means nothing; that of the joint and of the bind pose does.
+TEST_F(GltfMotion, ASkinnedMeshGoesWithItsFirstJoint) {
+  GltfFile file;
+  const auto node = static_cast<std::size_t>(file.triangle());
+  file.root["nodes"][node]["translation"] = {100, 0, 0};
+  file.root["nodes"][node]["skin"] = 0;
+  const int joint = file.append("nodes", {{"translation", {0, 2, 0}}});
+  file.list_in_scene(joint);
+  file.append("skins", {{"joints", {joint}}});
+  expect_near(moved(load(file).instances.at(0).transform, {1, 0, 0}), {1, 2, 0});
+  file.root["skins"][0]["inverseBindMatrices"] = file.append(
+      "accessors", {{"bufferView",
+                     file.view(GltfFile::bytes_of<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -2, 0, 1}))},
+                    {"componentType", static_cast<int>(kFloat)},
+                    {"count", 1},
+                    {"type", "MAT4"}});
+  expect_near(moved(load(file).instances.at(0).transform, {1, 0, 0}), {1, 0, 0});
+  animate(file, joint, "translation", {0, 1}, {0, 2, 0, 4, 2, 0}, "LINEAR");
+  expect_near(moved(load(file).instances.at(0).motion(0.5), {1, 0, 0}), {3, 0, 0});
+}
+
+// A millimetre, six thousand kilometres from the middle of the earth: only where all stands to each other is seen.
+TEST_F(GltfMotion, FarThingsStandWhereTheyStandToEachOther) {
+  GltfFile file;
+  file.root["nodes"][static_cast<std::size_t>(file.triangle())]["translation"] = {6.4e6, 0, 1e6};
+  const int moving = file.triangle();
+  file.root["nodes"][static_cast<std::size_t>(moving)]["rotation"] = {0, 0, 0, 1};
+  const int parent = file.append("nodes", {{"translation", {6.4e6, 0.001, 1e6}}, {"children", {moving}}});
+  file.root["scenes"][0]["nodes"] = {0, parent};
+  animate(file, moving, "translation", {0, 1}, {0, 0, 0, 0.002f, 0, 0}, "LINEAR");
+  file.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.75}, {"znear", 0.25}}}});
+  file.list_in_scene(file.append("nodes", {{"camera", 0}, {"translation", {6.4e6, 0.003, 1e6}}}));
+  const Scene scene = load(file);
+  const auto apart = [&](const glm::mat4& matrix) {
+    return moved(matrix, {0, 0, 0}) - moved(scene.instances.at(0).transform, {0, 0, 0});
+  };
+  expect_near(apart(scene.instances.at(1).motion(0.5)), {0.001f, 0.001f, 0});
+  expect_near(apart(scene.camera(0).world_from_camera), {0, 0.003f, 0});
+}
+
+TEST_F(GltfMotion, FarVerticesComeNear) {
+  GltfFile file;
+  file.show({{"attributes", {{"POSITION", file.floats({1e6f, 0, 0, 1e6f + 1, 0, 0, 1e6f, 1, 0}, 3)}}}});
+  const Scene scene = load(file);
+  const scenes::Instance& instance = scene.instances.at(0);
+  for (const scenes::Vertex& vertex : scene.meshes.at(0).vertices)
+    EXPECT_LT(glm::length(moved(instance.transform, vertex.position)), 1) << "around the origin";
+  expect_near(scene.meshes[0].vertices[1].position - scene.meshes[0].vertices[0].position, {1, 0, 0});
+}
+
 TEST_F(GltfMotion, LinearTranslationLoops) {
   GltfFile file;
   animate(file, file.triangle(), "translation", {1, 3}, {0, 0, 0, 4, 8, 0}, "LINEAR");
