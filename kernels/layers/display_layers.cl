@@ -19,7 +19,7 @@
 // Options: ALPHA 0 (default) | 1: layers have alpha; 0: they are opaque
 //          VIEW  PICTURE (default) | LAYERS, COVERAGE, NEAR: what layers there are, in every pixel: red where there are
 //                two, green the near one's coverage, blue the far one's confidence; that coverage; the near one alone
-//          SOURCE_STORAGE, OUTPUT_FORMAT, HISTORY_FORMAT as of temporal_display
+//          SOURCE_STORAGE, of depth, and OUTPUT_FORMAT as in texel.h, HISTORY_FORMAT as of temporal_display
 // Reference: tests/reference/display_layers.cpp
 #ifndef ALPHA
 #define ALPHA 0

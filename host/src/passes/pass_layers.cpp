@@ -250,8 +250,9 @@ void plan_display_layers(const PlanFacts& facts, PassList& list) {
       .make = make_pass<DisplayLayersPass>,
       .frames = Frames::kSparse};
   spec.add_where(facts.accumulates_alpha(), "ALPHA", settings, {.reads = {Resource::kHistoryAlpha}});
-  spec.add_options(fmt::format("-D VIEW={} {} -D HISTORY_FORMAT={}",
-                               layer_view_option(settings.temporal.view), scale_options(settings),
+  spec.add_options(fmt::format("-D VIEW={} -D SOURCE_STORAGE={} -D OUTPUT_FORMAT={} -D HISTORY_FORMAT={}",
+                               layer_view_option(settings.temporal.view),
+                               storage_option(settings.targets.storage), precision_of(settings.output.linear),
                                precision_of(settings.temporal.history)));
   list.passes.push_back(std::move(spec));
 }
