@@ -464,5 +464,18 @@ TEST(RecordedSettings, ComeBack) {
   EXPECT_TRUE(*read == recorded) << tools::to_json(*read);
 }
 
+TEST(RecordedSettings, NumbersOfMoreThan32BitsAreNotCut) {
+  const testing::TemporaryFolder folder;
+  const std::string text = tools::to_json({.settings = {.output_extent = {1111, 22}}}), number = "1111";
+  for (const char* other : {"4294968407", "-4294966185", "18446744073709552727"}) {  // 1111 in 32 or 64 bits
+    std::string wide = text;
+    wide.replace(wide.find(number), number.size(), other);
+    ASSERT_TRUE(tools::write_text(folder.file(tools::kSettingsFile), wide).ok());
+    const std::string why = tools::read_settings(folder.file("")).error();
+    EXPECT_NE(why.find("has a 'output_extent' that cannot be meant"), std::string::npos)
+        << other << ": " << why;
+  }
+}
+
 }  // namespace
 }  // namespace quincunx

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -58,24 +60,26 @@ bool read_name(const Json& json, Enum& value) {
   return false;
 }
 
+bool read_number(const Json& json, int& value) {
+  constexpr double kMost = std::numeric_limits<int>::max();
+  if (!json.is_number_integer() || std::abs(json.get<double>()) > kMost) return false;
+  value = json.get<int>();
+  return true;
+}
+
 // Returns whether the value can be meant.
 template <typename Value>
 bool read(const Json& json, Value& value) {
   if constexpr (std::is_enum_v<Value>) return read_name(json, value);
   if constexpr (std::is_same_v<Value, Extent>) {
-    const bool good =
-        json.is_array() && json.size() == 2 && json[0].is_number_integer() && json[1].is_number_integer();
-    if (good) value = {json[0].get<int>(), json[1].get<int>()};
-    return good;
+    return json.is_array() && json.size() == 2 && read_number(json[0], value.width) &&
+           read_number(json[1], value.height);
   }
   if constexpr (std::is_same_v<Value, bool>) {
     if (json.is_boolean()) value = json.get<bool>();
     return json.is_boolean();
   }
-  if constexpr (std::is_same_v<Value, int>) {
-    if (json.is_number_integer()) value = json.get<int>();
-    return json.is_number_integer();
-  }
+  if constexpr (std::is_same_v<Value, int>) return read_number(json, value);
   if constexpr (std::is_same_v<Value, float>) {
     if (json.is_number()) value = json.get<float>();
     return json.is_number();
