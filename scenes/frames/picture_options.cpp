@@ -124,7 +124,9 @@ void add_picture_options(tools::CommandLine& line, PictureOptions& options,
            "Scene time of the first frame");
   line.add("--seed", tools::number(options.seed),
            "Seed of random parts of scenes and scale paths; same seed, same pixels");
-  line.add("--exposure", tools::number(options.exposure, {.least = 0, .most = 1e9, .beyond = true}, "FACTOR"),
+  line.add("--exposure",
+           tools::number(options.exposure,
+                         {.least = 0, .most = FrameInputs::kLargestExposure, .beyond = true}, "FACTOR"),
            "Multiplies linear colour (default: the scene's)");
   line.group("Picture");
   line.add("--output", tools::extent(options.output), "Size of the picture").common();

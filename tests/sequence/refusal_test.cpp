@@ -65,6 +65,7 @@ TEST_F(Refusal, WrongUsage) {
   expect_refused(kRun + "--velocity-scale 0,0", 2, "leaves no motion");
   expect_refused(kRun + "--velocity none --velocity-convention nuke", 2, "it does nothing here");
   expect_refused(kRun + "--depth none --near 1", 2, "it does nothing here");
+  expect_refused(kRun + "--exposure 1e7", 2, "--exposure: '1e7' is no number");
   expect_refused(kRun + "--near 1e38", 2, "--near: '1e38' is no number from");
   expect_refused(kRun + "--noise auto --method bilinear", 2, "it goes with --method temporal");
   expect_refused(kRun + "--cuts 900", 2, "--cuts: there is no frame 900; the frames are 1 to 2");

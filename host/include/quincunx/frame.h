@@ -69,6 +69,7 @@ struct FrameInputs {
   // Factor of linear colour before the tone map: the present pass multiplies by it. It also tells `temporal`,
   // quincunx:reprojected and sharpening how bright the scene's unit of light is; they measure that if neither this nor
   // the image is given. 0: not given, 1 in the present pass. Not read with RGBA8.
+  static constexpr float kLargestExposure = 1e6f;
   float exposure = 0;
   // R32F, 1x1, a buffer or an image: another factor of the exposure, made on the device. A value that is not positive
   // and finite counts as none.

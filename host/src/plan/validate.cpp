@@ -241,7 +241,7 @@ void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
   if (plan.settings.targets.shading == Shading::kCheckerboard) check_parity(check, inputs);
   check.finite("jitter.x", inputs.jitter.x, -1, 1);
   check.finite("jitter.y", inputs.jitter.y, -1, 1);
-  check.finite("exposure", inputs.exposure, 0, kLargest);
+  check.finite("exposure", inputs.exposure, 0, FrameInputs::kLargestExposure);
   if (inputs.exposure_image) {
     check.output("exposure_image", inputs.exposure_image, PixelFormat::kR32F, inputs.exposure_image.storage,
                  {1, 1}, "exposure");

@@ -190,11 +190,12 @@ Result<FrameAttributes> frame_attributes(const std::string& path, const ImageHea
   if (attributes.near_plane && !(*attributes.near_plane > 0) && first.ok())
     first =
         Status::io(fmt::format("'{}' has an attribute 'quincunx:near' that is not a positive number", path));
-  constexpr float kMostExposure = 1e6f;  // as validate() has it
+  constexpr float kMostExposure = FrameInputs::kLargestExposure;
   if (attributes.exposure && !(*attributes.exposure >= 0 && *attributes.exposure <= kMostExposure) &&
       first.ok())
-    first = Status::io(fmt::format(
-        "'{}' has an attribute 'quincunx:exposure' that is not a number from 0 to 1000000", path));
+    first = Status::io(
+        fmt::format("'{}' has an attribute 'quincunx:exposure' that is not a number from 0 to {:.0f}", path,
+                    kMostExposure));
   if (!first.ok()) return first;
   return attributes;
 }

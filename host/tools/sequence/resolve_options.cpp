@@ -261,9 +261,11 @@ void add_picture_options(CommandLine& line, ResolveOptions& options) {
   line.add("--output", extent(options.sequence.output),
            "Size of the picture (default: attribute quincunx:outputSize)")
       .common();
-  line.add("--exposure", number(options.exposure, {.least = 0, .most = 1e9, .beyond = true}, "FACTOR"),
-           "Multiplies linear colour before the tone map, and tells temporal how bright the light is "
-           "(default: attribute quincunx:exposure, else 1, and temporal measures the light)");
+  line.add(
+      "--exposure",
+      number(options.exposure, {.least = 0, .most = FrameInputs::kLargestExposure, .beyond = true}, "FACTOR"),
+      "Multiplies linear colour before the tone map, and tells temporal how bright the light is "
+      "(default: attribute quincunx:exposure, else 1, and temporal measures the light)");
   add_resolve_options(line, options.resolve,
                       {.usual = "by what the frames offer",
                        .settled = [&options] { return options.method_named; },
