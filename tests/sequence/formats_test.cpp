@@ -29,6 +29,20 @@ class Formats : public SequenceTest {
     return texels;
   }
 
+  // Red, green and blue of a pixel that a file of these bytes becomes.
+  std::vector<float> light_of(const std::string& ending, const std::string& bytes) {
+    std::ofstream(folder_.file("f.0001." + ending), std::ios::binary) << bytes;
+    const auto result =
+        resolve(fmt::format("'{{}}/f.%04d.{0}' --out '{{}}/{0}.%04d.exr' -q {1}", ending, kSame));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    if (result.exit_code != 0) return {};
+    const LoadedImage made = image(output(1, ending));
+    std::vector<float> light;
+    for (const char* name : {"R", "G", "B"})
+      light.push_back(made.at(3, 2, made.channel(name)));
+    return light;
+  }
+
   static tools::ImageReader opened(const std::string& path) {
     auto reader = tools::ImageReader::open(path);
     EXPECT_TRUE(reader.ok()) << reader.status().message();
@@ -207,47 +221,80 @@ std::string bytes_of(const Value& value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-TEST_F(Formats, FloatsOfOtherFormatsAreLinear) {
-  const auto size = static_cast<std::size_t>(kRender.area());
-  const auto expect_even = [&](const std::string& ending, const std::string& bytes) {
-    std::ofstream(folder_.file("f.0001." + ending), std::ios::binary) << bytes;
-    const auto result =
-        resolve(fmt::format("'{{}}/f.%04d.{0}' --out '{{}}/{0}.%04d.exr' -q {1}", ending, kSame));
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(image(output(1, ending)).at(3, 2, 0), .25f) << ending;
-  };
-  std::string map = "Pf\n16 12\n-1.0\n", tiff("II*\0\x8\0\0\0\xa\0", 10);
-  const auto add_tag = [&](std::uint16_t tag, std::uint32_t value) {
-    constexpr std::uint16_t kLong = 4;
+using Tags = std::vector<std::pair<std::uint16_t, std::uint32_t>>;
+
+// A TIFF of kRender in one strip: codes of `bits` with `channels` each.
+std::string tiff_of(std::uint32_t bits, std::uint32_t channels, Tags tags, const std::string& pixels) {
+  constexpr std::uint16_t kLong = 4;
+  const auto size = static_cast<std::uint32_t>(pixels.size());
+  tags.insert(tags.end(),
+              {{256, 16}, {257, 12}, {258, bits}, {259, 1}, {277, channels}, {278, 12}, {279, size}});
+  const auto first = static_cast<std::uint32_t>(8 + 2 + (tags.size() + 1) * 12 + 4);
+  tags.emplace_back(273, first);
+  std::sort(tags.begin(), tags.end());
+  std::string tiff("II*\0\x8\0\0\0", 8);
+  tiff += bytes_of(static_cast<std::uint16_t>(tags.size()));
+  for (const auto& [tag, value] : tags)
     tiff += bytes_of(tag) + bytes_of(kLong) + bytes_of(std::uint32_t{1}) + bytes_of(value);
-  };
-  constexpr std::uint32_t kPixels = 8 + 2 + 10 * 12 + 4;
-  for (const auto& [tag, value] : {std::pair{256, 16u},
-                                   {257, 12u},
-                                   {258, 64u},
-                                   {259, 1u},
-                                   {262, 1u},
-                                   {273, kPixels},
-                                   {277, 1u},
-                                   {278, 12u},
-                                   {279, 12u * 16 * 8},
-                                   {339, 3u}})
-    add_tag(static_cast<std::uint16_t>(tag), value);
-  tiff += bytes_of(std::uint32_t{0});
-  for (std::size_t i = 0; i < size; ++i)
-    map += bytes_of(.25f), tiff += bytes_of(.25);
-  expect_even("pfm", map);
-  expect_even("tif", tiff);
+  return tiff + bytes_of(std::uint32_t{0}) + pixels;
+}
+constexpr std::uint16_t kPhotometric = 262, kSampleFormat = 339;
+
+TEST_F(Formats, FloatsOfOtherFormatsAreLinear) {
+  std::string map = "Pf\n16 12\n-1.0\n", doubles;
+  for (int i = 0; i < kRender.area(); ++i)
+    map += bytes_of(.25f), doubles += bytes_of(.25);
+  const std::vector<float> quarter(3, .25f);
+  EXPECT_EQ(light_of("pfm", map), quarter);
+  EXPECT_EQ(light_of("tif", tiff_of(64, 1, {{kPhotometric, 1}, {kSampleFormat, 3}}, doubles)), quarter);
 }
 
-TEST_F(Formats, TurnedPicturesAreRefused) {
-  for (const char* order : {"+Y 12 +X 16", "+X 16 -Y 12"}) {
-    std::ofstream(folder_.file("f.0001.hdr"), std::ios::binary) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n"
-                                                                << order << "\n"
-                                                                << std::string(16 * 12 * 4, '\x7f');
-    expect_refused(fmt::format("'{{}}/f.%04d.hdr' --out '{{}}/o.%04d.exr' -q {}", kSame), 1,
-                   "f.0001.hdr' is stored turned or mirrored (orientation ");
-  }
+// A picture that would come out as another one ends before the first frame.
+TEST_F(Formats, PicturesThatAreReadWronglyAreRefused) {
+  const auto expect_sentence = [&](const std::string& ending, const std::string& bytes,
+                                   const std::string& why) {
+    std::ofstream(folder_.file("f.0001." + ending), std::ios::binary) << bytes;
+    for (const char* what : {"-n", "-q"})
+      expect_refused(fmt::format("'{{}}/f.%04d.{}' --out '{{}}/o.%04d.exr' {} {}", ending, kSame, what), 1,
+                     fmt::format("f.0001.{}' cannot be read: {}", ending, why));
+  };
+  const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n", texels(16 * 12 * 4, '\x7f');
+  for (const char* order : {"+Y 12 +X 16", "+X 16 -Y 12"})
+    expect_sentence("hdr", fmt::format("{}\n{}\n{}", head, order, texels),
+                    "it is stored turned or mirrored (orientation ");
+  for (const char* line : {"EXPOSURE=0", "EXPOSURE=x", "COLORCORR=1 1"})
+    expect_sentence("hdr", fmt::format("{}{}\n\n-Y 12 +X 16\n{}", head, line, texels),
+                    fmt::format("its header has '{}'", line));
+  const auto pixels = [](std::size_t bytes) { return std::string(kRender.area() * bytes, '\x7f'); };
+  expect_sentence("tif", tiff_of(8, 3, {{kPhotometric, 8}}, pixels(3)),
+                  "its colour is CIELAB; write it as RGB");
+  expect_sentence("tif", tiff_of(8, 4, {{kPhotometric, 5}}, pixels(4)),
+                  "its colour is CMYK; write it as RGB");
+  expect_sentence("tif", tiff_of(16, 1, {{kPhotometric, 0}}, pixels(2)), "its white is 0; write black as 0");
+  expect_sentence("tif", tiff_of(24, 1, {{kPhotometric, 1}, {kSampleFormat, 3}}, pixels(3)),
+                  "it holds floats of 24 bits; write 16 or 32");
+}
+
+TEST_F(Formats, AGammaHasItsNumber) {
+  const std::string path = folder_.file("f.0001.png");
+  const std::vector<Attribute> attributes = {{"oiio:ColorSpace", std::string("GammaCorrected")},
+                                             {"oiio:Gamma", 1.7f}};
+  ASSERT_TRUE(tools::write_picture(path, kRender, codes().data(), 0, tools::Alpha::kOpaque, attributes).ok());
+  EXPECT_EQ(opened(path).header().parts[0].colour_space, "Gamma1.7");
+}
+
+// What the exposures of all programs that changed it have multiplied is taken back.
+TEST_F(Formats, ARadianceFileIsDividedByItsExposures) {
+  std::string texels;
+  for (int i = 0; i < kRender.area(); ++i)
+    texels += "\x80\x40\x20\x81";
+  const auto resolved = [&](const std::string& lines) {
+    return light_of("hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + lines + "\n-Y 12 +X 16\n" + texels);
+  };
+  const std::vector<float> plain = resolved("");
+  EXPECT_EQ(resolved("EXPOSURE=2\nEXPOSURE= 4.0\nCOLORCORR= 1 2 .5\n"),
+            (std::vector{plain[0] / 8, plain[1] / 16, plain[2] / 4}));
+  EXPECT_NE(resolved("PRIMARIES= .708 .292 .17 .797 .131 .046 .3127 .329\n"), plain);
 }
 
 TEST_F(Formats, SubsampledChannelsAreRefused) {

@@ -6,8 +6,11 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iomanip>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +18,7 @@
 
 #include "tools/image/image_reader.h"
 #include "tools/program/atomic_file.h"
+#include "tools/program/command_line.h"
 
 namespace quincunx::tools {
 namespace {
@@ -24,8 +28,15 @@ static_assert(std::endian::native == std::endian::little, "the numbers of the fi
 constexpr std::uint32_t kMagic = 20000630;
 constexpr std::uint32_t kOneTiledPart = 0x200, kSeveralParts = 0x1000;  // flags of the version
 constexpr std::size_t kLongestName = 255;
+constexpr int kLongestNumber = 20;
 // Scanlines in a block, by the number of the compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
 constexpr std::array<std::int64_t, 10> kLinesOfBlock = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+
+// Whatever a header says, a picture's bytes can be counted.
+std::int64_t side_of(std::int64_t number) {
+  constexpr std::int64_t kMost = 1 << 24;
+  return std::clamp<std::int64_t>(number, 0, kMost);
+}
 
 // The file's bytes in order; after a read beyond its end nothing more is good.
 class Bytes {
@@ -50,6 +61,16 @@ class Bytes {
     }
     return name;
   }
+
+  // A number or another word after blanks and comments, as portable maps have them.
+  std::string take_word() {
+    std::string word;
+    while ((file_ >> std::ws).peek() == '#')
+      file_.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+    file_ >> std::setw(kLongestNumber) >> word;
+    return word;
+  }
+  std::int64_t take_side() { return side_of(std::atoll(take_word().c_str())); }
 
   std::string take_text(std::int64_t length) {
     if (length < 0 || length > left()) file_.setstate(std::ios::failbit);
@@ -274,10 +295,60 @@ bool tiff_is_whole(Bytes& bytes, bool big_endian) {
   return bytes.good();
 }
 
+// Returns where the pixels of a binary portable map end. Source: netpbm's pages of PBM, PGM and PPM; Debevec's of PFM.
+std::int64_t end_of_map(Bytes& bytes, char kind) {
+  const bool is_bits = kind == '4', is_float = kind == 'f' || kind == 'F';
+  bytes.go_to(2);
+  const std::int64_t width = bytes.take_side(), height = bytes.take_side();
+  const std::int64_t code = is_float ? 4 : !is_bits && bytes.take_side() > 255 ? 2 : 1;
+  if (is_float) bytes.take_word();  // its scale
+  const std::int64_t row = is_bits ? (width + 7) / 8 : width * code * (kind == '6' || kind == 'F' ? 3 : 1);
+  return bytes.size() - bytes.left() + 1 + row * height;
+}
+
+// Returns where the pixels of a BMP end; 0 where they are compressed.
+std::int64_t end_of_bmp(Bytes& bytes) {
+  constexpr std::uint32_t kOldHeader = 12, kMasks = 3;
+  bytes.go_to(10);
+  const auto first = bytes.take<std::uint32_t>(), header = bytes.take<std::uint32_t>();
+  const bool old = header == kOldHeader;
+  const auto take_side = [&] {  // a negative height: from the top down
+    return side_of(old ? bytes.take<std::uint16_t>() : std::abs(std::int64_t{bytes.take<std::int32_t>()}));
+  };
+  const std::int64_t width = take_side(), height = take_side();
+  bytes.take<std::uint16_t>();  // planes
+  const std::int64_t bits = bytes.take<std::uint16_t>();
+  const auto compression = old ? 0 : bytes.take<std::uint32_t>();
+  return compression == 0 || compression == kMasks ? first + (width * bits + 31) / 32 * 4 * height : 0;
+}
+
+// Returns where the pixels of a TGA end; 0 where they are compressed.
+std::int64_t end_of_tga(Bytes& bytes) {
+  bytes.go_to(0);
+  const std::int64_t name = bytes.take<std::uint8_t>();
+  bytes.take<std::uint8_t>();
+  const auto type = bytes.take<std::uint8_t>();
+  bytes.take<std::uint16_t>();  // first colour of a map
+  const std::int64_t colours = bytes.take<std::uint16_t>(), colour_bits = bytes.take<std::uint8_t>();
+  bytes.take<std::uint32_t>();  // origin
+  const std::int64_t width = bytes.take<std::uint16_t>(), height = bytes.take<std::uint16_t>();
+  const std::int64_t pixel = (bytes.take<std::uint8_t>() + 7) / 8;
+  constexpr int kHeader = 18, kLeastCompressed = 8;
+  return type < kLeastCompressed ? kHeader + name + colours * ((colour_bits + 7) / 8) + width * height * pixel
+                                 : 0;
+}
+
 // Returns whether a file that is no EXR ends as its format has it. True for a format that is not known.
-bool end_is_there(Bytes& bytes) {
+bool end_is_there(Bytes& bytes, const std::string& path) {
   using namespace std::string_view_literals;
   const std::string begin = bytes.take_text(std::min<std::int64_t>(bytes.size(), 20));
+  const auto reaches = [&bytes](std::int64_t end) { return bytes.good() && end <= bytes.size(); };
+  if (begin.size() > 2 && begin[0] == 'P' && "456fF"sv.find(begin[1]) != std::string_view::npos)
+    return reaches(end_of_map(bytes, begin[1]));
+  if (begin.starts_with("BM")) return reaches(end_of_bmp(bytes));
+  if (begin.starts_with("RIFF"))  // WebP
+    return reaches(8 + static_cast<std::int64_t>(number_of(begin.substr(4, 4), false)));
+  if (in_lower_case(path).ends_with(".tga")) return reaches(end_of_tga(bytes));
   const bool jpeg = begin.starts_with("\xff\xd8\xff"), png = begin.starts_with("\x89PNG");
   if (jpeg || png) {
     constexpr std::int64_t kTail = 4096;  // zeros may follow the end
@@ -303,7 +374,7 @@ bool end_is_there(Bytes& bytes) {
 Status check_whole(const std::string& path) {
   if (Status status = check_readable(path); !status.ok()) return status;
   Bytes bytes(path);
-  if (!end_is_there(bytes))
+  if (!end_is_there(bytes, path))
     return Status::io(fmt::format("'{}' is cut short: its end is missing; render or copy it again", path));
   return Blocks(path).check();
 }

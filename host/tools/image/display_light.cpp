@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <string_view>
 
 namespace quincunx::tools {
 namespace {
@@ -155,8 +157,18 @@ float linear_of_kodak_log(float code) {
 
 // Nothing where nobody knows the space.
 ColourCurve curve_of(const std::string& name) {
+  constexpr std::string_view kGamma = "gamma";
+  constexpr float kMostGamma = 10;  // gamma22 is a space of somebody's
   const std::string lower = lower_case(name);
   if (lower == "srgb" || lower == "srgb_rec709_scene") return each_colour(linear_of_srgb);
+  if (lower.starts_with(kGamma)) {
+    float gamma = 0;
+    const char* const end = lower.data() + lower.size();
+    const auto [rest, error] = std::from_chars(lower.data() + kGamma.size(), end, gamma);
+    if (error != std::errc()) return {};  // OpenImageIO would take any word for a number
+    if (rest == end && gamma > 0 && gamma < kMostGamma)
+      return each_colour([gamma](float code) { return code > 0 ? std::pow(code, gamma) : 0; });
+  }
   if (lower == "kodaklog" || lower == "cineon") return each_colour(linear_of_kodak_log);
   return backend::curve_to_linear(name);
 }
@@ -180,6 +192,7 @@ Result<InputColour> InputColour::of(const std::string& path, const ImagePart& pa
                                     const std::string& named) {
   InputColour colour;
   colour.straight_ = part.straight_alpha;
+  colour.gain_ = part.gain;
   colour.name_ = named.empty() ? part.colour_space : named;
   const std::string lower = lower_case(colour.name_);
   for (const LinearSpace& space : linear_spaces()) {
@@ -210,11 +223,17 @@ Result<InputColour> InputColour::of(const std::string& path, const ImagePart& pa
                                      named, near_names(named)));
 }
 
+std::string InputColour::name() const {
+  return has_gain() ? fmt::format("{}, times {:.4g}", name_, fmt::join(gain_, " ")) : name_;
+}
+
 void InputColour::apply(std::span<float> rgba) const {
   if (curve_) curve_(rgba);
-  if (!matrix_ && !straight_) return;
+  if (!matrix_ && !straight_ && !has_gain()) return;
   for (std::size_t i = 0; i + 3 < rgba.size(); i += 4) {
     float* c = &rgba[i];
+    for (std::size_t j = 0; j < 3; ++j)
+      c[j] *= gain_[j];
     if (matrix_) {
       const auto& m = *matrix_;
       const float r = finite(c[0]), g = finite(c[1]), b = finite(c[2]);

@@ -38,15 +38,18 @@ class InputColour {
                                 const std::string& named = {});
 
   // Whether nothing is to be done.
-  bool is_light() const { return !curve_ && !matrix_ && !straight_; }
-  const std::string& name() const { return name_; }
+  bool is_light() const { return !curve_ && !matrix_ && !straight_ && !has_gain(); }
+  std::string name() const;
 
   void apply(std::span<float> rgba) const;
 
  private:
+  bool has_gain() const { return gain_ != ImagePart().gain; }
+
   std::string name_;
   ColourCurve curve_;
-  std::optional<std::array<float, 9>> matrix_;  // row by row; after the curve
+  std::array<float, 3> gain_ = ImagePart().gain;  // after the curve
+  std::optional<std::array<float, 9>> matrix_;    // row by row; after the gain
   bool straight_ = false;
 };
 

@@ -13,7 +13,6 @@
 #include <half.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <limits>
 #include <mutex>
@@ -22,6 +21,7 @@
 #include <utility>
 
 #include "tools/image/image_io.h"
+#include "tools/image/image_openimageio_header.h"
 #include "tools/image/image_reader.h"
 
 namespace quincunx::tools {
@@ -32,90 +32,6 @@ using Base = TypeDesc::BASETYPE;
 
 // Debian's build tells on stderr of every attribute that a format has no place for.
 [[maybe_unused]] const bool quiet = OIIO::attribute("debug", 0);
-
-// Attributes: EXR's names, and OpenImageIO's where those are others.
-constexpr std::pair<const char*, const char*> kNames[] = {{"worldToCamera", "worldtocamera"},
-                                                          {"worldToNDC", "worldtoscreen"},
-                                                          {"framesPerSecond", "FramesPerSecond"},
-                                                          {"pixelAspectRatio", "PixelAspectRatio"},
-                                                          {"owner", "Copyright"},
-                                                          {"capDate", "DateTime"},
-                                                          {"comments", "ImageDescription"},
-                                                          {"timeCode", "smpte:TimeCode"},
-                                                          {"expTime", "ExposureTime"},
-                                                          {"aperture", "FNumber"}};
-const TypeDesc kPairType(TypeDesc::FLOAT, TypeDesc::VEC2);
-const TypeDesc kChromaticitiesType(TypeDesc::FLOAT, 8);
-
-std::string exr_name(std::string_view name) {
-  for (const auto& [exr, own] : kNames)
-    if (OIIO::Strutil::iequals(OIIO::string_view(name.data(), name.size()), own)) return exr;
-  return std::string(name);
-}
-
-std::string own_name(const std::string& name) {
-  for (const auto& [exr, own] : kNames)
-    if (name == exr) return own;
-  return name;
-}
-
-struct AttributeWriter {
-  OIIO::ImageSpec& spec;
-  const std::string name;
-
-  void operator()(const std::string& value) const { spec.attribute(name, value); }
-  void operator()(int value) const { spec.attribute(name, value); }
-  void operator()(float value) const { spec.attribute(name, value); }
-  void operator()(const Vec2& value) const { spec.attribute(name, kPairType, &value.x); }
-  void operator()(const Rational& value) const { spec.attribute(name, OIIO::TypeRational, &value.numerator); }
-  void operator()(const Matrix& value) const { spec.attribute(name, OIIO::TypeMatrix44, value.data()); }
-  void operator()(const Chromaticities& value) const {
-    spec.attribute(name, kChromaticitiesType, value.data());
-  }
-  void operator()(const TimeCode& value) const { spec.attribute(name, OIIO::TypeTimeCode, &value.time); }
-};
-
-template <typename Value>
-Value copied(const OIIO::ParamValue& from) {
-  Value value;
-  std::memcpy(&value, from.data(), sizeof value);
-  return value;
-}
-
-template <typename Pair>
-Vec2 rounded(const Pair& pair) {
-  return {static_cast<float>(pair[0]), static_cast<float>(pair[1])};
-}
-
-std::optional<AttributeValue> value_of(const OIIO::ParamValue& from) {
-  const TypeDesc type = from.type();
-  if (type == OIIO::TypeString) return from.get_string();
-  if (type == OIIO::TypeInt) return from.get_int();
-  if (type == OIIO::TypeFloat || type == TypeDesc(TypeDesc::DOUBLE)) return from.get_float();
-  if (type == OIIO::TypeRational) return copied<Rational>(from);
-  if (type == OIIO::TypeTimeCode) return copied<TimeCode>(from);
-  if (type == OIIO::TypeMatrix44) return copied<Matrix>(from);
-  if (type == TypeDesc(TypeDesc::DOUBLE, TypeDesc::MATRIX44)) {
-    const auto exact = copied<std::array<double, 16>>(from);
-    Matrix matrix;
-    std::copy(exact.begin(), exact.end(), matrix.begin());
-    return matrix;
-  }
-  if (type == kChromaticitiesType) return copied<Chromaticities>(from);
-  if (type == kPairType) return copied<Vec2>(from);
-  if (type == TypeDesc(TypeDesc::DOUBLE, TypeDesc::VEC2)) return rounded(copied<std::array<double, 2>>(from));
-  if (type == TypeDesc(TypeDesc::INT, TypeDesc::VEC2)) return rounded(copied<std::array<int, 2>>(from));
-  return std::nullopt;
-}
-
-std::vector<Attribute> attributes_of(const OIIO::ImageSpec& spec) {
-  std::vector<Attribute> attributes;
-  for (const OIIO::ParamValue& from : spec.extra_attribs) {
-    if (auto value = value_of(from))
-      attributes.push_back({exr_name(from.name().string()), *std::move(value)});
-  }
-  return attributes;
-}
 
 // Texels of a row from one place to another, which differ in type or stride.
 struct Row {
@@ -190,44 +106,6 @@ RowFunction converter(Base from, ChannelType to) {
 
 Base base_of(ChannelType type) {
   return type == ChannelType::kHalf ? TypeDesc::HALF : TypeDesc::FLOAT;
-}
-
-bool is_code(Base type) {
-  return type == TypeDesc::UINT8 || type == TypeDesc::UINT16;
-}
-
-bool is_light(Base type) {
-  return type == TypeDesc::HALF || type == TypeDesc::FLOAT || type == TypeDesc::DOUBLE;
-}
-
-ImagePart describe(const OIIO::ImageSpec& spec, std::string_view format) {
-  const bool is_exr = format == "openexr";
-  // A PFM is linear, whatever OpenImageIO says of all portable maps.
-  const bool is_pfm = format == "pnm" && is_light(Base(spec.format.basetype));
-  ImagePart part;
-  part.attributes = attributes_of(spec);
-  part.name = spec["oiio:subimagename"].get();
-  part.data = {spec.x, spec.y, {spec.width, spec.height}};
-  part.display = {spec.full_x, spec.full_y, {spec.full_width, spec.full_height}};
-  part.deep = spec.deep;
-  part.dwa = OIIO::Strutil::starts_with(spec["compression"].get(), "dwa");
-  part.view = spec["view"].get();
-  part.pixel_aspect = spec["PixelAspectRatio"].get(1.0f);
-  part.colour_space = is_code(Base(spec.format.basetype)) ? "sRGB" : "linear";
-  if (!is_exr) {  // whose own attributes of these names are another program's remarks
-    part.straight_alpha = spec["oiio:UnassociatedAlpha"].get(0) != 0 && spec.alpha_channel >= 0;
-    if (!is_pfm) part.colour_space = spec["oiio:ColorSpace"].get(part.colour_space);
-    part.orientation = spec["Orientation"].get(1);
-  }
-  if (const auto* found = spec.find_attribute("chromaticities", kChromaticitiesType))
-    part.chromaticities = copied<Chromaticities>(*found);
-  for (int c = 0; c < spec.nchannels; ++c) {
-    const Base type = Base(spec.channelformat(c).basetype);
-    part.channels.push_back({.name = spec.channel_name(c),
-                             .stored = type == TypeDesc::HALF ? ChannelType::kHalf : ChannelType::kFloat,
-                             .integer = !is_light(type) && !is_code(type)});
-  }
-  return part;
 }
 
 // How neighbouring channels of a part get to where they belong.
@@ -335,7 +213,7 @@ std::string read_band(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, cons
                                                TypeDesc::UNKNOWN, band)
                         : input.read_tiles(reading.part, 0, spec.x, spec.x + spec.width, begin, end, 0, 1,
                                            reading.first, reading.last, TypeDesc::UNKNOWN, band);
-  if (done) return {};
+  if (done && !input.has_error()) return {};  // libraries go on over much that is broken, with a warning
   const std::string why = input.geterror();
   return why.empty() ? "pixels are missing or broken" : why;
 }
@@ -395,13 +273,14 @@ class File : public backend::ImageFile {
  public:
   explicit File(const std::string& path) : path_(path), input_(open_input(path)) {
     if (!input_) throw std::runtime_error(with_advice(OIIO::geterror()));
+    if (input_->has_error()) throw std::runtime_error(input_->geterror());  // of what is decoded at once
     is_exr_ = std::string_view(input_->format_name()) == "openexr";
     const int count = is_exr_ ? std::max(input_->spec()["oiio:subimages"].get(1), 1) : 1;
     for (int i = 0; i < count; ++i) {
       if (!input_->seek_subimage(i, 0)) throw std::runtime_error(with_advice(input_->geterror()));
       OIIO::ImageSpec spec = input_->spec();
       if (spec.nchannels == 2 && spec.alpha_channel == 1) spec.channelnames[0] = "Y";
-      header.parts.push_back(describe(spec, input_->format_name()));
+      header.parts.push_back(oiio::describe(spec, input_->format_name(), path));
       specs_.push_back(std::move(spec));
     }
     if (const auto* views = specs_.front().find_attribute("multiView"); views && is_exr_)
@@ -541,7 +420,7 @@ Result<Bytes> encode(FileFormat format, const Texels& texels, std::span<const At
   if (format != FileFormat::kTiff) spec.attribute("oiio:ColorSpace", light ? "Linear" : "sRGB");
   if (!light) spec.attribute("oiio:UnassociatedAlpha", 1);
   for (const Attribute& attribute : attributes)
-    std::visit(AttributeWriter{spec, own_name(attribute.name)}, attribute.value);
+    oiio::set_attribute(spec, {oiio::own_name(attribute.name), attribute.value});
   constexpr int kUp = 0x10, kAll = 0xf8;  // filters of a PNG; of the fast ones the first is no larger
   spec.attribute("png:compressionLevel", texels.small ? 9 : 1);
   spec.attribute("png:filter", texels.small ? kAll : kUp);
@@ -568,7 +447,7 @@ Result<Bytes> encode_exr(Extent extent, std::span<const Channel> channels,
   }
   spec.attribute("compression", "zip");
   for (const Attribute& attribute : attributes)
-    std::visit(AttributeWriter{spec, attribute.name}, attribute.value);
+    oiio::set_attribute(spec, attribute);
 
   // A band holds whole blocks for many threads, and not more than OpenImageIO writes at once.
   constexpr int kBlock = 16;

@@ -42,13 +42,13 @@ struct ImagePart {
   ImageWindow data;
   ImageWindow display;
   bool deep = false;
-  bool dwa = false;               // compressed by DWAA or DWAB
-  std::string view = {};          // "left"; empty: none is named
-  float pixel_aspect = 1;         // width of a pixel over its height
-  std::string colour_space = {};  // "linear", "sRGB", "KodakLog", as the file or its format has it
+  bool dwa = false;                       // compressed by DWAA or DWAB
+  std::string view = {};                  // "left"; empty: none is named
+  float pixel_aspect = 1;                 // width of a pixel over its height
+  std::string colour_space = {};          // "linear", "sRGB", "Gamma2.2", as the file or its format has it
+  std::array<float, 3> gain = {1, 1, 1};  // makes light of linear colour
   std::optional<Chromaticities> chromaticities = {};
   bool straight_alpha = false;  // colour is not multiplied by alpha
-  int orientation = 1;          // as TIFF has it; 1: upright, 0: not known
   std::vector<HeaderChannel> channels;
   std::vector<Attribute> attributes = {};
 
@@ -110,7 +110,8 @@ class ImageFile {
 // One open file. Move-only; one thread at a time.
 class ImageReader {
  public:
-  // Errors: kIoFailure for a file that is missing, damaged or of a format that is not known.
+  // Errors: kIoFailure for a file that is missing, damaged or of a format that is not known, and for a picture that
+  // would come out as another one: turned, in CMYK or Lab.
   static Result<ImageReader> open(const std::string& path);
 
   const ImageHeader& header() const { return file_->header; }
@@ -132,11 +133,12 @@ class ImageReader {
 void set_image_threads(int threads);
 
 // Checks whether a file holds all of its pixels, from its size and its tables of offsets alone. Reads the headers and
-// the tables of all parts, and no pixels: well under a millisecond. JPEG and PNG must end as their formats have it, DPX
-// must have the size that its header says, and TIFF all strips or tiles of its first picture. It accepts other formats,
-// and compressions that it does not know. Errors: kIoFailure where blocks (scanlines or tiles) were never written or
-// lie beyond the file's end: a copy or a renderer that was broken off; and for a path that is no file. One sentence
-// that names `path`. Thread-safe. Source: "OpenEXR File Layout", OpenEXR documentation.
+// the tables of all parts, and no pixels: well under a millisecond. JPEG and PNG must end as their formats have it.
+// DPX, WebP, binary portable maps, and BMP and TGA without compression must have the size that follows from their
+// headers, and TIFF all strips or tiles of its first picture. It accepts other formats, and compressions that it does
+// not know. Errors: kIoFailure where blocks (scanlines or tiles) were never written or lie beyond the file's end: a
+// copy or a renderer that was broken off; and for a path that is no file. One sentence that names `path`. Thread-safe.
+// Source: "OpenEXR File Layout", OpenEXR documentation.
 Status check_whole(const std::string& path);
 
 }  // namespace quincunx::tools

@@ -296,10 +296,7 @@ class Search {
     const ImagePart& part = header_.parts[place.part];
     const auto [width, height] = part.display.extent;
     dwa_ |= part.dwa;
-    if (part.orientation > 1) {
-      complain(
-          fmt::format("is stored turned or mirrored (orientation {}); write it upright", part.orientation));
-    } else if (part.deep) {
+    if (part.deep) {
       complain(fmt::format("holds deep pixels in channel '{}'; flat ones are needed", name));
     } else if (header_.at(place).integer) {
       complain(fmt::format("holds integers in channel '{}'; half or float is needed", name));
