@@ -488,6 +488,8 @@ TEST(CControl, NullAndNonsenseAreErrors) {
       {[&] { return quincunx_front_flip(front, share, "best", 1, &number); }, "best"},
       {[&] { return quincunx_front_resolve_ms(front, "temporal", kNaN, 1, &number); }, "scale"},
       {[&] { return quincunx_front_resolve_ms(front, "temporal", 1, kNaN, &number); }, "megapixels"},
+      {[&] { return quincunx_front_resolve_ms(front, "temporal", 1, 1e308, &number); },
+       "(0, 1073.7] megapixels"},
       {[&] { return quincunx_front_resolve_ms(front, nullptr, 1, 1, &number); }, "method is NULL"},
       {[] { return quincunx_output_settings_init(nullptr); }, "settings is NULL"},
       {[] { return quincunx_output_follower_create(nullptr, nullptr); }, "follower is NULL"},

@@ -58,6 +58,14 @@ TEST(CostTable, WhatWasNotRecordedIsExtrapolated) {
   EXPECT_NEAR(*table.predict(1, 0.25), 0.5 * 20 + 0.5 * from_both, 1e-12);
 }
 
+TEST(CostTable, NoTimeIsLongerThanOneThatCanBeRecorded) {
+  CostTable table = CostTable::create(1).value();
+  ASSERT_TRUE(table.record(0, 1e-320, 10).ok());
+  EXPECT_EQ(table.predict(4, 0), 60000);
+  ASSERT_TRUE(table.record(100'000, 4, 20).ok());
+  EXPECT_EQ(table.predict(4, 0), 20);
+}
+
 TEST(CostTable, FixedPartIsTheLinesIntercept) {
   CostTable table = make(1e6);
   for (const double area : {0.25, 0.5, 0.75, 1.0})

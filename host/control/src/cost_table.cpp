@@ -86,7 +86,8 @@ std::optional<double> CostTable::predict(double area_fraction, double fixed_part
   if (entries_.empty() || !within(area_fraction, kMaxArea)) return std::nullopt;
   const Entry* own = find(bin_of(area_fraction));
   const auto moved = [&](const Entry& entry) {
-    return entry.gpu_ms * work(area_fraction, fixed_part) / work(entry.area, fixed_part);
+    return std::min(entry.gpu_ms * work(area_fraction, fixed_part) / work(entry.area, fixed_part),
+                    ResolutionController::kMaxMs);
   };
   double sum = 0;
   double weights = 0;

@@ -137,7 +137,7 @@ std::optional<double> ErrorFront::flip(const SceneMix& mix, const MethodVariant&
 
 std::optional<double> ErrorFront::resolve_ms(const MethodVariant& method, double scale,
                                              double output_megapixels) const {
-  if (!(output_megapixels > 0 && std::isfinite(output_megapixels))) return std::nullopt;
+  if (!(output_megapixels > 0 && output_megapixels <= kMaxMegapixels)) return std::nullopt;
   double sum = 0;
   for (std::size_t i = 0; i < kSceneClasses; ++i) {
     const auto ms = value_at(curve(static_cast<SceneClass>(i), method), scale, &FrontPoint::ms_per_megapixel);

@@ -271,8 +271,8 @@ quincunx_status ask_front(const quincunx_front* front, const char* method, const
     if (write_known(ask(*variant), to)) return {};
     return Status::invalid(
         fmt::format("'{}' at this scale has no {} in the front; the scale must be above 0, a mix 1 together, "
-                    "an output above 0 megapixels, and the method one of the front's",
-                    method, name));
+                    "an output in (0, {:.1f}] megapixels, and the method one of the front's",
+                    method, name, quincunx::ErrorFront::kMaxMegapixels));
   });
 }
 
@@ -476,11 +476,9 @@ quincunx_status quincunx_front_flip(const quincunx_front* front, const double sh
 
 quincunx_status quincunx_front_resolve_ms(const quincunx_front* front, const char* method, double scale,
                                           double output_megapixels, double* ms) {
-  return c::ask_front(front, method, "ms", ms,
-                      [&](const quincunx::MethodVariant& variant) -> std::optional<double> {
-                        if (!(output_megapixels > 0)) return std::nullopt;
-                        return front->front.resolve_ms(variant, scale, output_megapixels);
-                      });
+  return c::ask_front(front, method, "ms", ms, [&](const quincunx::MethodVariant& variant) {
+    return front->front.resolve_ms(variant, scale, output_megapixels);
+  });
 }
 
 quincunx_status quincunx_output_settings_init(quincunx_output_settings* settings) {

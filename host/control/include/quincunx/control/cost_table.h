@@ -35,8 +35,8 @@ class QUINCUNX_API CostTable {
   double confidence(double area_fraction) const;
 
   // Predicts the time in ms: a mean of the time that was recorded there, weighted by its confidence, and of the times
-  // that the other entries extrapolate to, by their own confidence, if fixed_part of the cost does not scale. Nothing
-  // while the table is empty or for an area fraction outside (0, 4].
+  // that the other entries extrapolate to (60000 at most), by their own confidence, if fixed_part of the cost does not
+  // scale. Nothing while the table is empty or for an area fraction outside (0, 4].
   std::optional<double> predict(double area_fraction, double fixed_part = 0.25) const;
 
   // Returns the part of the cost at the output resolution that does not scale, within [0, 0.9], from a straight line

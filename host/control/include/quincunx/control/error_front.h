@@ -109,8 +109,9 @@ class QUINCUNX_API ErrorFront {
   // for a method without points, an invalid mix, or a scale that is not above 0.
   std::optional<double> flip(const SceneMix& mix, const MethodVariant& method, double scale) const;
 
+  static constexpr double kMaxMegapixels = 1e-6 * kLargestSide * kLargestSide;
   // Returns the same of the resolve passes' milliseconds, the mean over the classes, for an output of so many
-  // megapixels (10^6 pixels, above 0).
+  // megapixels (10^6 pixels), in (0, kMaxMegapixels].
   std::optional<double> resolve_ms(const MethodVariant& method, double scale, double output_megapixels) const;
 
  private:
