@@ -21,6 +21,7 @@ TEST(Jitter, HasAsManyPlacesAsTheScaleNeeds) {
   EXPECT_EQ(jitter_phases({908, 512}, kOutput), 16) << "15.86 rounded up";
   EXPECT_EQ(jitter_phases({2560, 1440}, kOutput), 2);
   EXPECT_EQ(jitter_phases({1, 1}, {32768, 32768}), 512);
+  EXPECT_EQ(jitter_phases({1, 1}, {2147483647, 2147483647}), 512);
 }
 
 TEST(Jitter, IsHaltonsAboutItsMean) {

@@ -144,7 +144,10 @@ double radical_inverse(std::uint64_t index, unsigned base) {
 
 int jitter_phases(Extent render, Extent output) {
   if (is_empty(render) || is_empty(output)) return 1;
-  return static_cast<int>(std::min((8 * output.area() + render.area() - 1) / render.area(), kMaxPhases));
+  const auto area = [](Extent of) {  // of no more than a frame can have, which 64 bits hold eight times
+    return Extent{std::min(of.width, kLargestSide), std::min(of.height, kLargestSide)}.area();
+  };
+  return static_cast<int>(std::min((8 * area(output) + area(render) - 1) / area(render), kMaxPhases));
 }
 
 Vec2 jitter(std::uint64_t frame_index, Extent render, Extent output) {
