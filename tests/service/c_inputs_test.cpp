@@ -317,6 +317,38 @@ TEST(CSync, EventsInAndOut) {
   EXPECT_TRUE(refuses("sync.wait_count is -1; it must be at least 0")) << quincunx_last_error();
 }
 
+// Memory that was handed back, or never taken, goes with its last owner.
+TEST(CMemory, NothingIsLeftOfImports) {
+  const auto device = c_device("cpu");
+  const auto contexts_users = [&] {
+    cl_uint count = 0;
+    EXPECT_EQ(clFinish(static_cast<cl_command_queue>(quincunx_device_queue(device.get()))), CL_SUCCESS);
+    EXPECT_EQ(clGetContextInfo(static_cast<cl_context>(quincunx_device_context(device.get())),
+                               CL_CONTEXT_REFERENCE_COUNT, sizeof(count), &count, nullptr),
+              CL_SUCCESS);
+    return count;
+  };
+  const cl_uint before = contexts_users();
+  alignas(4096) static std::array<unsigned char, 4096> page;
+  auto external = sized<quincunx_external_memory>();
+  external.handle = QUINCUNX_MAPPED;
+  external.mapped = page.data();
+  external.bytes = page.size();
+  for (const int changes : {0, 1, 2}) {
+    quincunx_memory* imported = nullptr;
+    ASSERT_EQ(quincunx_memory_import(device.get(), &external, &imported), QUINCUNX_OK)
+        << quincunx_last_error();
+    const COwner<quincunx_memory> memory(imported);
+    if (changes > 0) {
+      EXPECT_EQ(quincunx_memory_acquire(imported), QUINCUNX_OK) << quincunx_last_error();
+    }
+    if (changes > 1) {
+      EXPECT_EQ(quincunx_memory_release(imported, nullptr), QUINCUNX_OK) << quincunx_last_error();
+    }
+  }
+  EXPECT_EQ(contexts_users(), before);
+}
+
 // A pointer to memory of another API's, whose frames and pictures lie where they are.
 TEST(CMemory, FramesAndPicturesLieInMemoryOfOthers) {
   const auto plan = c_plan({}, {.method = Method::kPoint,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "device/device_impl.h"
+#include "quincunx/advanced/log.h"
 
 // A function of OpenCL 3.0: null in a program whose loader is older.
 extern "C" cl_mem CL_API_CALL clCreateBufferWithProperties(cl_context, const cl_ulong*, cl_mem_flags, size_t,
@@ -142,6 +143,7 @@ struct SharedMemory::Impl {
   cl::Buffer buffer;
   std::size_t bytes = 0;
   void* mapped = nullptr;  // null: the driver knows the change of sides
+  void* held = nullptr;    // by the host: a pointer that clEnqueueMapBuffer gave
   bool acquired = false;
   ChangeSides acquire = nullptr;
   ChangeSides release = nullptr;
@@ -151,12 +153,28 @@ struct SharedMemory::Impl {
     if (const cl_int code = how(device->queue(), 1, &memory, 0, nullptr, done); code != CL_SUCCESS)
       throw cl::Error(code, call);
   }
-  void map(cl_map_flags flags, cl_bool blocking, cl_event* done) const {
+  void map(cl_map_flags flags, cl_bool blocking, cl_event* done) {
     cl_int code = CL_SUCCESS;
-    const void* const at =
-        clEnqueueMapBuffer(device->queue(), buffer(), blocking, flags, 0, bytes, 0, nullptr, done, &code);
+    held = clEnqueueMapBuffer(device->queue(), buffer(), blocking, flags, 0, bytes, 0, nullptr, done, &code);
     if (code != CL_SUCCESS) throw cl::Error(code, "clEnqueueMapBuffer");
-    if (at != mapped) throw std::runtime_error("the device does not use the mapped memory in place");
+    if (held != mapped) throw std::runtime_error("the device does not use the mapped memory in place");
+  }
+  void unmap(cl::Event* done = nullptr) {
+    device->queue.enqueueUnmapMemObject(buffer, std::exchange(held, nullptr), nullptr, done);
+  }
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (held == nullptr) return;
+    try {  // PoCL keeps for ever what is mapped
+      cl::Event done;
+      unmap(&done);
+      done.wait();
+    } catch (...) {
+      log_line(LogLevel::kWarning, caught("closing imported memory", device->info.name).message());
+    }
   }
 };
 
@@ -179,7 +197,7 @@ Status SharedMemory::acquire() {
   if (impl_->acquired) return {};
   try {
     if (impl_->mapped != nullptr) {
-      impl_->device->queue.enqueueUnmapMemObject(impl_->buffer, impl_->mapped);
+      impl_->unmap();
     } else {
       impl_->change(impl_->acquire, "clEnqueueAcquireExternalMemObjectsKHR", nullptr);
     }
