@@ -3,49 +3,13 @@
 // of it is a Status that names a field and changes nothing, or a next extent on the ladder.
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
-#include <limits>
 
 #include "../control/all_controllers.h"
-#include "random.h"
-#include "rounds.h"
+#include "wild.h"
 
 namespace quincunx::testing {
 namespace {
-
-using scenes::Random;
-
-// Half of them plausible, the others anything that a double or an int can be.
-double wild(Random& random, double plausible) {
-  constexpr double kOdd[] = {0.0,
-                             -0.0,
-                             -1.0,
-                             1e-320,
-                             1e-9,
-                             1.0,
-                             59999.0,
-                             60000.0,
-                             60000.1,
-                             1e18,
-                             1e308,
-                             std::numeric_limits<double>::infinity(),
-                             std::numeric_limits<double>::quiet_NaN()};
-  switch (random.below(8)) {
-    case 0:
-      return std::bit_cast<double>(random.next());
-    case 1:
-      return kOdd[random.below(static_cast<int>(std::size(kOdd)))];
-    default:
-      return plausible * std::exp2(2 * random.signed_unit());
-  }
-}
-
-int wild_int(Random& random, int plausible) {
-  constexpr int kOdd[] = {0, 1, 2, 7, -1, -2, 32768, 32769, 2147483647, -2147483647 - 1};
-  return random.below(6) == 0 ? kOdd[random.below(static_cast<int>(std::size(kOdd)))]
-                              : 1 + random.below(plausible);
-}
 
 // Sides stay small most of the time, so that thousands of ladders are made quickly.
 LadderSettings wild_ladder(Random& random) {

@@ -11,40 +11,13 @@
 
 #include "../tools/temporary_folder.h"
 #include "device/device_impl.h"
-#include "random.h"
-#include "rounds.h"
 #include "tools/image/image_reader.h"
 #include "tools/record/recorded_settings.h"
 #include "tools/sequence/resolve_task.h"
+#include "wild.h"
 
 namespace quincunx::testing {
 namespace {
-
-using scenes::Random;
-
-std::size_t place_in(const std::string& text, Random& random) {
-  return static_cast<std::size_t>(random.below(static_cast<int>(text.size())));
-}
-
-std::string damaged(std::string text, Random& random) {
-  for (int hit = 0, hits = 1 + random.below(4); hit < hits && !text.empty(); ++hit) {
-    const int kind = random.below(6);
-    char& at = text[place_in(text, random)];
-    if (kind == 0) at ^= static_cast<char>(1 << random.below(8));
-    if (kind == 1) at = static_cast<char>(random.below(256));
-    if (kind == 2) at = random.below(2) == 0 ? '\xff' : '\0';
-    if (kind == 3) at = static_cast<char>('0' + random.below(10));
-    if (kind == 4) text.insert(place_in(text, random), text, place_in(text, random), 8);
-    if (kind == 5 && random.below(8) == 0) text.resize(place_in(text, random));
-  }
-  return text;
-}
-
-void expect_sentence(const Status& status) {
-  if (status.ok()) return;
-  EXPECT_FALSE(status.message().empty());
-  EXPECT_EQ(status.message().find('\n'), std::string::npos) << status.message();
-}
 
 void write(const std::string& path, const std::string& bytes) {
   std::filesystem::remove(path);  // overwriting in place makes some file systems wait for the disk

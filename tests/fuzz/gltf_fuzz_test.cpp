@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Damages good glTF files in thousands of ways, the same ones each time: whatever comes of it is a Result,
-// and a Scene that holds together when it is not an error. QUINCUNX_FUZZ_ROUNDS=n makes it n rounds each.
+// and a Scene that holds together when it is not an error.
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 
@@ -11,14 +11,12 @@
 #include "../scenes/gltf_fixture.h"
 #include "../tools/temporary_folder.h"
 #include "gltf/loader.h"
-#include "random.h"
-#include "rounds.h"
 #include "scene.h"
+#include "wild.h"
 
 namespace quincunx::testing {
 namespace {
 
-using scenes::Random;
 using scenes::Scene;
 
 // A file in which everything that is read occurs.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Owners of what quincunx.h makes, plans of the library's own settings, and pictures in host memory.
+// Owners of what quincunx.h makes, plans of the library's own settings, pictures in host memory, and a frame that
+// brings all there is.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -125,6 +126,78 @@ class HostPicture {
   std::size_t row_;
   std::vector<unsigned char> bytes_;
   quincunx_image image_ = {};
+};
+
+constexpr Extent kPicture{24, 18};
+constexpr Extent kRegion{12, 8};
+
+inline quincunx_settings good_settings() {
+  auto settings = sized<quincunx_settings>();
+  EXPECT_EQ(quincunx_settings_init(&settings), QUINCUNX_OK);
+  settings.output_width = settings.target_width = kPicture.width;
+  settings.output_height = settings.target_height = kPicture.height;
+  settings.colour_format = QUINCUNX_RGBA32F;
+  settings.velocity_format = QUINCUNX_RG32F;
+  return settings;
+}
+
+// All that a frame can bring, in host memory, for a plan that reads all of it.
+struct Everything {
+  static quincunx_settings settings() {
+    quincunx_settings all = good_settings();
+    all.min_output_width = all.min_output_height = 8;
+    all.particle_target_width = kPicture.width;
+    all.particle_target_height = kPicture.height;
+    all.focus_width = all.focus_target_width = kRegion.width;
+    all.focus_height = all.focus_target_height = kRegion.height;
+    all.focus_mask = all.measures_content = all.fades = 1;
+    all.sky_motion = QUINCUNX_BY_CAMERA;
+    all.depth_convention = QUINCUNX_REVERSED;
+    return all;
+  }
+
+  Everything() {
+    frame.struct_size = sizeof(frame);
+    frame.colour = colour.image();
+    frame.depth = depth.image();
+    frame.velocity = velocity.image();
+    frame.reactive = reactive.image();
+    frame.exposure_image = exposure.image();
+    frame.render_width = frame.output_width = kPicture.width;
+    frame.render_height = frame.output_height = kPicture.height;
+    frame.near_plane = 1;
+    frame.far_plane = 100;
+    frame.particles = &particles;
+    frame.focus = &focus;
+    frame.fade = &fade;
+    frame.sync = &sync;
+    region = frame;
+    region.exposure_image = nullptr;
+    region.particles = nullptr;
+    region.focus = nullptr;
+    region.fade = nullptr;
+    region.sync = nullptr;
+    region.render_width = region.output_width = kRegion.width;
+    region.render_height = region.output_height = kRegion.height;
+  }
+  Everything(const Everything&) = delete;
+  Everything& operator=(const Everything&) = delete;
+
+  HostPicture colour{kPicture, PixelFormat::kRGBA32F}, depth{kPicture, PixelFormat::kR32F},
+      velocity{kPicture, PixelFormat::kRG32F}, reactive{kPicture, PixelFormat::kR8},
+      exposure{{1, 1}, PixelFormat::kR32F}, other{kPicture, PixelFormat::kRGBA32F},
+      mask{kRegion, PixelFormat::kR8}, linear{kPicture, PixelFormat::kRGBA32F},
+      presented{kPicture, PixelFormat::kRGBA8};
+  quincunx_particles particles = {sizeof(particles), colour.image(), depth.image(),
+                                  reactive.image(),  kPicture.width, kPicture.height};
+  quincunx_rectangle rectangles[4] = {{4, 4, 6, 4}, {5, 5, 3, 2}, {4, 4, 1, 1}, {6, 4, 2, 2}};
+  quincunx_inputs frame = {};
+  quincunx_inputs region = {};
+  quincunx_focus focus = {sizeof(focus), &region, 3, 2, rectangles, 2, 2, mask.image()};
+  quincunx_fade fade = {sizeof(fade), other.image(), 0.5f, 0};
+  void* done = nullptr;
+  quincunx_sync sync = {sizeof(sync), nullptr, 0, 0, nullptr, nullptr, nullptr, 0, 0};
+  quincunx_outputs outputs = {sizeof(outputs), linear.image(), presented.image()};
 };
 
 }  // namespace quincunx::testing

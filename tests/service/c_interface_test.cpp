@@ -420,7 +420,7 @@ TEST(CSettings, AStructWithoutItsSizeIsRefused) {
   quincunx_settings settings = {};
   EXPECT_EQ(quincunx_settings_init(&settings), QUINCUNX_INVALID_ARGUMENT);
   EXPECT_STREQ(quincunx_last_error(),
-               "settings.struct_size is 0; it must be the sizeof of the struct, at least 144");
+               "settings.struct_size is 0; it must be the sizeof of the struct, in [144, 4096]");
 }
 
 TEST(CSettings, NeedsAreThoseOfThePlan) {

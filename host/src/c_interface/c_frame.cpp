@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "c_interface/c_settings.h"
 #include "c_interface/sized_struct.h"
@@ -29,6 +30,11 @@ Status check_host(const char* name, const quincunx_image& image, const ImageView
   if (image.pitch != 0 && image.pitch < row) {
     return bad(name, fmt::format("pitch is {}; a row of {} texels of {} takes {}", image.pitch, image.width,
                                  name_of(view.format), row));
+  }
+  const std::size_t rows = static_cast<std::size_t>(std::max(image.height, 1));
+  if (image.pitch > std::numeric_limits<std::ptrdiff_t>::max() / rows) {
+    return bad(name, fmt::format("pitch is {}; no memory holds {} such rows, and none lies before the first",
+                                 image.pitch, rows));
   }
   return {};
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The functions of quincunx.h. Each checks its pointers, calls the library and lets no exception out.
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <new>
@@ -67,7 +68,13 @@ quincunx_status report(quincunx_status code, const char* text) noexcept {
 }  // namespace
 
 quincunx_status report(const Status& status) {
-  if (!status.ok()) message = status.message();
+  if (status.ok()) return QUINCUNX_OK;
+  message = status.message();
+  if (status.code() ==
+      StatusCode::kInvalidArgument) {  // which may repeat a caller's name; others have a compiler's log
+    std::replace_if(
+        message.begin(), message.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; }, '?');
+  }
   return code_of(status.code());
 }
 

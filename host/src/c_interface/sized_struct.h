@@ -47,10 +47,13 @@ inline constexpr std::size_t kFirstSize<quincunx_external_memory> = 48;
 template <typename Struct>
 Status check_size(const Struct* given, const char* name) {
   if (given == nullptr) return Status::invalid(fmt::format("{} is NULL; it must point to one", name));
-  // Another remainder is none of a struct's, and would cut a field in two.
-  if (given->struct_size >= kFirstSize<Struct> && given->struct_size % alignof(Struct) == 0) return {};
-  return Status::invalid(fmt::format("{}.struct_size is {}; it must be the sizeof of the struct, at least {}",
-                                     name, given->struct_size, kFirstSize<Struct>));
+  // Another remainder is none of a struct's, and would cut a field in two; no later struct will be as large as a page.
+  constexpr std::size_t kLargest = 4096;
+  if (given->struct_size >= kFirstSize<Struct> && given->struct_size <= kLargest &&
+      given->struct_size % alignof(Struct) == 0)
+    return {};
+  return Status::invalid(fmt::format("{}.struct_size is {}; it must be the sizeof of the struct, in [{}, {}]",
+                                     name, given->struct_size, kFirstSize<Struct>, kLargest));
 }
 
 // Reads the fields that the caller has; those that only this library has keep their value in `own`. Errors:

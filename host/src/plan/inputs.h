@@ -14,7 +14,7 @@
 
 namespace quincunx {
 
-// Whether a check asks OpenCL if buffers reach as far as their images.
+// Whether a check asks OpenCL if memory is as large as the images that it holds.
 enum class Memory : std::uint8_t { kUnseen, kAsked };
 
 // Parts of validate(): a frame, whose outputs may be null; a focus, where `region` is the plan's focus_plan(), null

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -33,7 +34,7 @@ class FrameCheck {
   void output(const char* field, const ImageView& image, PixelFormat format, Storage storage, Extent extent,
               const char* whose);
   void finite(const char* field, float value, float low, float high);
-  // Checks where a buffer's rows lie, and that kernels can count to their end.
+  // Checks where a buffer's rows lie, that kernels can count to their end, and that the memory is what is said of it.
   void layout(const char* field, const ImageView& image);
 
   void complain(const std::string& text) { complaints_ += (complaints_.empty() ? "" : "; ") + text; }
@@ -44,6 +45,8 @@ class FrameCheck {
 
   // Checks that the buffer goes on to the image's end.
   void room(const char* field, const ImageView& image, std::size_t end);
+  // Checks that the memory is an image as large, of such texels.
+  void image2d(const char* field, const ImageView& image);
 
   const ResolvePlan& plan_;
   Memory memory_;
@@ -99,10 +102,14 @@ void FrameCheck::image_in(const char* field, const ImageView& image, PixelFormat
   if (image.storage != storage) {
     complain(fmt::format("{}.storage is {}; the plan has {}", field, name(image.storage), name(storage)));
   }
-  if (image.storage == Storage::kBuffer) layout(field, image);
+  layout(field, image);
 }
 
 void FrameCheck::layout(const char* field, const ImageView& image) {
+  if (image.storage != Storage::kBuffer) {
+    if (memory_ == Memory::kAsked) image2d(field, image);
+    return;
+  }
   const std::size_t texel = bytes_per_pixel(image.format);
   const std::size_t row = static_cast<std::size_t>(image.extent.width) * texel;
   if (texel != 0 && image.pitch != 0 && (image.pitch < row || image.pitch % texel != 0)) {
@@ -133,13 +140,35 @@ void FrameCheck::room(const char* field, const ImageView& image, std::size_t end
   if (clGetMemObjectInfo(image.memory, CL_MEM_TYPE, sizeof(kind), &kind, nullptr) != CL_SUCCESS ||
       clGetMemObjectInfo(image.memory, CL_MEM_SIZE, sizeof(bytes), &bytes, nullptr) != CL_SUCCESS ||
       kind != CL_MEM_OBJECT_BUFFER) {
-    complain(fmt::format("{}.memory is no OpenCL buffer; its storage says that it is one", field));
+    complain(fmt::format("{0}.memory is no OpenCL buffer, and {0}.storage says that it is one", field));
   } else if (bytes < end) {
     complain(fmt::format(
         "{0}.memory has {1} bytes; {0}.offset {2}, {0}.pitch {3} and {0}.extent {4}x{5} "
         "need {6}",
         field, bytes, image.offset, image.row_pitch(), image.extent.width, image.extent.height, end));
   }
+}
+
+void FrameCheck::image2d(const char* field, const ImageView& image) {
+  cl_mem_object_type kind = 0;
+  std::size_t width = 0, height = 0, texel = 0;
+  const auto ask = [&](cl_image_info what, std::size_t& answer) {
+    return clGetImageInfo(image.memory, what, sizeof(answer), &answer, nullptr) == CL_SUCCESS;
+  };
+  if (clGetMemObjectInfo(image.memory, CL_MEM_TYPE, sizeof(kind), &kind, nullptr) != CL_SUCCESS ||
+      kind != CL_MEM_OBJECT_IMAGE2D || !ask(CL_IMAGE_WIDTH, width) || !ask(CL_IMAGE_HEIGHT, height) ||
+      !ask(CL_IMAGE_ELEMENT_SIZE, texel)) {
+    return complain(
+        fmt::format("{0}.memory is no OpenCL image2d, and {0}.storage says that it is one", field));
+  }
+  const std::size_t bytes = bytes_per_pixel(image.format);
+  const bool is_wider = channels_of(image.format) == 2 && texel == 2 * bytes;  // of four channels
+  if (image.extent.width <= static_cast<std::int64_t>(width) &&
+      image.extent.height <= static_cast<std::int64_t>(height) && (texel == bytes || is_wider))
+    return;
+  complain(fmt::format(
+      "{0}.memory has {1}x{2} texels of {3} bytes; {0}.extent {4}x{5} and {0}.format {6} need {4}x{5} of {7}",
+      field, width, height, texel, image.extent.width, image.extent.height, name_of(image.format), bytes));
 }
 
 void check_camera(FrameCheck& check, const CameraMotion& camera) {
@@ -303,7 +332,7 @@ Status validate_focus(const ResolvePlan& plan, const ResolvePlan* region, const 
 
 Status validate_layout(const ResolvePlan& plan, const char* field, const ImageView& image) {
   FrameCheck check(plan, Memory::kAsked);
-  if (image.storage == Storage::kBuffer) check.layout(field, image);
+  check.layout(field, image);
   return check.status();
 }
 
