@@ -48,7 +48,8 @@ TextureFacts facts_of(GLuint texture) {
   of_level(GL_TEXTURE_DEPTH_SIZE, &facts.depth_bits);
   GLint immutable = GL_FALSE;
   glGetTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_IMMUTABLE_FORMAT, &immutable);
-  if (immutable == GL_FALSE) glGetTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, &facts.largest_level);
+  facts.immutable = immutable != GL_FALSE;
+  if (!facts.immutable) glGetTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, &facts.largest_level);
   return facts;
 }
 

@@ -4,12 +4,14 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "frame_layout.h"
 #include "quincunx_gl/bridge.h"
+#include "texel_copy.h"
 
 namespace quincunx::gl {
 
@@ -24,6 +26,8 @@ struct TextureFacts {
   std::array<GLint, 4> bits = {};  // red, green, blue, alpha
   GLint type = GL_NONE;            // of red
   GLint depth_bits = 0;            // above 0: it has a depth format
+  bool immutable = false;
+  std::shared_ptr<const TexelCopy> copy;  // by a shader, once it was asked for
   GLint largest_level = -1;  // GL_TEXTURE_MAX_LEVEL where the texture lacks levels that its filter asks for
 };
 
@@ -38,8 +42,8 @@ class CallerTextures {
   Status check_picture(GLuint texture, PixelFormat format, Extent output);
 
   // Returns the facts of a texture that was checked for this plane.
-  const TextureFacts& facts(PlaneKind kind, GLuint texture) { return known_[{kind, texture}]; }
-  const TextureFacts& picture_facts(GLuint texture) { return pictures_[texture]; }
+  TextureFacts& facts(PlaneKind kind, GLuint texture) { return known_[{kind, texture}]; }
+  TextureFacts& picture_facts(GLuint texture) { return pictures_[texture]; }
 
   void forget();
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "caller_texture.h"
 #include "fence.h"
+#include "quincunx/advanced/log.h"
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/gl_calls.h"
 #include "state_scope.h"
@@ -172,6 +172,23 @@ void HostCopy::prepare_shaders() {
   }
 }
 
+// For textures of the caller's; null: by transfers of pixels. A view needs an immutable texture, and image units take
+// no other without all its levels.
+const TexelCopy* HostCopy::shader_of(TextureFacts& facts, GLuint texture, const Plane& plane,
+                                     TexelCopy::Direction direction) {
+  if (!picture_copy_ || !facts.immutable) return nullptr;
+  if (facts.copy) return facts.copy.get();
+  const ErrorScope callers;
+  try {
+    facts.copy = std::make_shared<TexelCopy>(texture, plane.format, facts.depth_bits > 0, direction);
+  } catch (const std::exception& error) {
+    ErrorScope::take();
+    facts.immutable = false;  // of use for nothing else
+    log_line(LogLevel::kWarning, fmt::format("interop: {}", error.what()));
+  }
+  return facts.copy.get();
+}
+
 HostCopy::~HostCopy() {
   glFinish();  // GL may still be reading back into the buffers that go now
 }
@@ -185,13 +202,17 @@ void HostCopy::read_back(Slot& slot, const FrameTextures& from, Extent render) {
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     const Plane& plane = planes_[i];
     const ImageView& view = view_of(regions, plane.kind);
-    if (!plane_copies_.empty()) {
-      plane_copies_[i].run(render, slot.pixels.gl_buffer(), slot.pixels.offset() + view.offset, view.pitch,
-                           before());
+    const GLuint texture = texture_of(from, plane.kind);
+    const TexelCopy* const shader = settings_.imports
+                                        ? shader_of(textures_->facts(plane.kind, texture), texture, plane,
+                                                    TexelCopy::Direction::kToBuffer)
+                                    : plane_copies_.empty() ? nullptr
+                                                            : &plane_copies_[i];
+    if (shader != nullptr) {
+      shader->run(render, slot.pixels.gl_buffer(), slot.pixels.offset() + view.offset, view.pitch, before());
       continue;
     }
     const GlFormat names = gl_format(plane.format);
-    const GLuint texture = texture_of(from, plane.kind);
     const bool is_depth = plane.kind == PlaneKind::kDepth && has_depth_format(texture);
     void* const start = slot.pixels.gl_pointer(view.offset);
     glPixelStorei(GL_PACK_ROW_LENGTH, static_cast<GLint>(view.pitch / bytes_per_pixel(plane.format)));
@@ -329,9 +350,13 @@ Status HostCopy::present(GLuint into) {
   const UnpackScope restore(before());
   const GlFormat names = gl_format(settings_.picture);
   output_.begin_gl();
-  if (picture_copy_ && into == 0) {
-    picture_copy_->run(settings_.output_extent, output_.gl_buffer(), output_.offset(), output_view_.pitch,
-                       before());
+  const TexelCopy* const shader =
+      into != 0       ? shader_of(textures_->picture_facts(into), into, {.format = settings_.picture},
+                                  TexelCopy::Direction::kToTexture)
+      : picture_copy_ ? &*picture_copy_
+                      : nullptr;
+  if (shader != nullptr) {
+    shader->run(settings_.output_extent, output_.gl_buffer(), output_.offset(), output_view_.pitch, before());
   } else {
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, output_.gl_buffer());
     texture_write(into != 0 ? into : presented_.get(), 0, settings_.output_extent, names.format, names.type,

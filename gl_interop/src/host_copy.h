@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "caller_texture.h"
 #include "fence.h"
 #include "frame_layout.h"
 #include "pixel_buffer.h"
@@ -122,6 +123,8 @@ class HostCopy final : public Bridge {
   void read_back(Slot& slot, const FrameTextures& from, Extent render);
   void hand_over(Slot& slot, Extent render);
   void prepare_shaders();
+  const TexelCopy* shader_of(TextureFacts& facts, GLuint texture, const Plane& plane,
+                             TexelCopy::Direction direction);
 
   Device device_;
   std::vector<Plane> planes_;
@@ -130,7 +133,8 @@ class HostCopy final : public Bridge {
   const RenderTargets* targets_ = nullptr;  // that are drawn or were drawn last; none with imports
   Framebuffer reader_;                      // through which textures are read
   DepthReader depth_reader_;
-  // Copies of the planes, and of the picture, by shaders; none: by transfers of pixels.
+  // Copies of the planes, and of the picture, by shaders; none: by transfers of pixels. Those of imported textures
+  // are kept with what is known of them.
   std::vector<TexelCopy> plane_copies_;
   std::optional<TexelCopy> picture_copy_;
   SlotRing ring_;

@@ -21,9 +21,10 @@
 namespace quincunx::gl::testing {
 namespace {
 
-constexpr cl_ulong kMemoryFd = 0x2060, kSemaphoreFd = 0x2055;
+constexpr cl_ulong kMemoryFd = 0x2060, kDmaBuf = 0x2067, kSemaphoreFd = 0x2055;
 
 struct Imported {
+  cl_ulong handle = 0;
   vk::DeviceMemory memory = 0;
   std::uint8_t* mapped = nullptr;
   bool acquired = false;
@@ -228,6 +229,14 @@ int PretendImports::acquired() const {
   return count;
 }
 
+int PretendImports::dma_bufs() const {
+  const std::lock_guard lock(state().mutex);
+  int count = 0;
+  for (const auto& [memory, imported] : state().imported)
+    count += imported.handle == kDmaBuf ? 1 : 0;
+  return count;
+}
+
 const char* extensions_of_imports() {
   return state().flaw ? " cl_khr_device_uuid cl_khr_external_memory cl_khr_external_semaphore" : "";
 }
@@ -235,10 +244,13 @@ const char* extensions_of_imports() {
 bool tells_of_imports(cl_device_info name, std::size_t room, void* value, std::size_t* bytes_ret,
                       cl_int* code) {
   if (!state().flaw) return false;
-  const cl_uint memory = kMemoryFd, semaphore = kSemaphoreFd;
+  const cl_uint memory[] = {kMemoryFd, kDmaBuf}, semaphore = kSemaphoreFd;
   const void* from = nullptr;
   std::size_t bytes = sizeof(cl_uint);
-  if (name == 0x204F) from = &memory;
+  if (name == 0x204F) {
+    from = memory;
+    bytes = sizeof(memory);
+  }
   if (name == 0x204D) from = &semaphore;
   if (name == 0x106A) {
     from = state().uuid.data();
@@ -272,7 +284,8 @@ cl_mem CL_API_CALL clCreateBufferWithProperties(cl_context context, const cl_ulo
   if (*code == CL_SUCCESS && state().flaw == PretendImports::Flaw::kRefuses) *code = CL_INVALID_VALUE;
   if (*code != CL_SUCCESS) return nullptr;
   Imported imported;
-  if (properties[0] != kMemoryFd ||
+  imported.handle = properties[0];  // lavapipe exports no dma-bufs: what is given as one is an opaque fd
+  if ((properties[0] != kMemoryFd && properties[0] != kDmaBuf) ||
       !Vulkan::get().import(static_cast<int>(properties[1]), bytes, &imported)) {
     *code = CL_INVALID_VALUE;
     return nullptr;

@@ -26,6 +26,7 @@ class PretendImports {
   PretendImports(const PretendImports&) = delete;
   PretendImports& operator=(const PretendImports&) = delete;
 
+  int dma_bufs() const;  // memory that was imported as one
   int acquired() const;  // memory objects that OpenCL owns now
 };
 
