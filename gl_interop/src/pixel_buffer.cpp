@@ -8,6 +8,7 @@
 #include <new>
 #include <utility>
 
+#include "quincunx/advanced/log.h"
 #include "quincunx_gl/capabilities.h"
 #include "state_scope.h"
 
@@ -106,9 +107,9 @@ void PixelBuffer::settle() noexcept {
     code = clEnqueueUnmapMemObject(device_.queue(), cl_buffer(), own_bytes(), 0, nullptr, nullptr);
     if (code != CL_SUCCESS) log_release_failure(code);
   }
-  code = clFinish(device_.queue());
-  if (code == CL_SUCCESS) return;
-  log_release_failure(code);
+  const Status done = device_.finish();
+  if (done.ok()) return;
+  log_line(LogLevel::kWarning, fmt::format("interop: {}", done.message()));
   PixelMemory::never_free(memory_);  // a device that does not answer may still be at work
 }
 

@@ -20,6 +20,7 @@ namespace quincunx::gl {
 namespace {
 
 constexpr int kMinSlots = 2, kMaxSlots = 16;
+constexpr std::uint64_t kLongestSeconds = 30;  // until a copy is done
 
 void check_vk(VkResult code, const char* call) {
   if (code != VK_SUCCESS)
@@ -138,7 +139,7 @@ struct Direction {
 // Memory that both have, and who waits for whom.
 struct Crossing {
   std::unique_ptr<VulkanDevice::Memory> memory;
-  cl_command_queue queue = nullptr;
+  std::optional<Device> device;
   std::optional<SharedMemory> cl;
   ClEvent released;  // by OpenCL, where the host waits for it
   VkCommandBuffer commands = nullptr;
@@ -159,6 +160,7 @@ struct VulkanBridge::Impl {
 
   Crossing make_crossing(const Device& to, std::size_t bytes);
   void destroy(Crossing& crossing) noexcept;
+  static void leave(Crossing& crossing);  // until the process ends
   void probe();
 
   void finish_copy(Crossing& crossing);     // waits for Vulkan's last copy
@@ -191,6 +193,7 @@ struct VulkanBridge::Impl {
   ImageView output_view;
   std::uint64_t frames = 0;
   bool presenting = false;
+  bool leaves_all = false;  // memory, and Vulkan's objects, which may still be in use
   std::string reason;
   std::vector<VkBufferCopy> rows;  // of the copy that is recorded; kept for its memory
 };
@@ -223,12 +226,16 @@ VulkanBridge::Impl::~Impl() {
   for (Crossing& slot : slots)
     destroy(slot);
   destroy(output);
+  if (leaves_all) {
+    static_cast<void>(vulkan.release());
+    return;
+  }
   if (pool != VK_NULL_HANDLE) functions.DestroyCommandPool(context.device, pool, nullptr);
 }
 
 Crossing VulkanBridge::Impl::make_crossing(const Device& to, std::size_t bytes) {
   Crossing made;
-  made.queue = to.queue();
+  made.device = to;
   try {
     made.memory =
         vulkan->allocate(bytes, mapped ? VulkanDevice::Place::kMapped : VulkanDevice::Place::kDevice);
@@ -257,24 +264,39 @@ Crossing VulkanBridge::Impl::make_crossing(const Device& to, std::size_t bytes) 
   return made;
 }
 
-// Neither side uses it afterwards.
+// Neither side uses it afterwards, except that after a wait that was too long they may: all is left as it is then.
 void VulkanBridge::Impl::destroy(Crossing& crossing) noexcept {
   if (!crossing.memory) return;
   try {
-    finish_copy(crossing);
+    if (!leaves_all) finish_copy(crossing);
+    if (!leaves_all && crossing.cl) check_status(crossing.device->finish());
   } catch (const std::exception& error) {
     log_line(LogLevel::kWarning, fmt::format("interop: {}", error.what()));
+    leaves_all = true;
   }
-  if (crossing.cl) clFinish(crossing.queue);
+  if (leaves_all) return leave(crossing);
   if (crossing.copied != VK_NULL_HANDLE) functions.DestroyFence(context.device, crossing.copied, nullptr);
   crossing.cl.reset();  // before the memory that it uses
   crossing = {};
 }
 
+void VulkanBridge::Impl::leave(Crossing& crossing) {
+  static_cast<void>(new Crossing(std::move(crossing)));
+  crossing = {};
+}
+
 void VulkanBridge::Impl::finish_copy(Crossing& crossing) {
-  if (!std::exchange(crossing.copying, false)) return;
-  check_vk(functions.WaitForFences(context.device, 1, &crossing.copied, VK_TRUE, UINT64_MAX),
-           "vkWaitForFences");
+  if (!crossing.copying) return;
+  const VkResult code =
+      functions.WaitForFences(context.device, 1, &crossing.copied, VK_TRUE, kLongestSeconds * 1'000'000'000);
+  if (code == VK_TIMEOUT) {
+    throw InteropError(fmt::format(
+        "Vulkan did not copy within {} s; a semaphore that it waits for, such as VulkanFrame::drawn, "
+        "may never have been signalled",
+        kLongestSeconds));
+  }
+  crossing.copying = false;
+  check_vk(code, "vkWaitForFences");
   check_vk(functions.ResetFences(context.device, 1, &crossing.copied), "vkResetFences");
 }
 
@@ -284,7 +306,7 @@ void VulkanBridge::Impl::release(Crossing& crossing) {
   check_status(crossing.cl->release(crossing.to_vulkan ? nullptr : &event));
   crossing.released = ClEvent::adopt(event);
   if (!crossing.to_vulkan) {
-    check_cl(clFlush(crossing.queue), "clFlush");
+    check_cl(clFlush(crossing.device->queue()), "clFlush");
     return;
   }
   check_status(crossing.to_vulkan->cl->signal());
@@ -450,8 +472,8 @@ void VulkanBridge::Impl::probe() {
     try {
       seen = read_probe(own.queue(), to_and_fro.cl->memory(), "Vulkan");
     } catch (...) {
-      static_cast<void>(new Crossing(std::move(to_and_fro)));
-      to_and_fro = {};
+      leave(to_and_fro);
+      leave(second);
       throw;
     }
     if (seen != from_vulkan) throw InteropError("OpenCL read other bytes than Vulkan wrote");

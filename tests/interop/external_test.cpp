@@ -10,6 +10,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstring>
 #include <optional>
 
@@ -21,6 +22,10 @@
 #include "quincunx/advanced/log.h"
 #include "quincunx/resolve_service.h"
 #include "skip.h"
+
+namespace quincunx {
+extern std::atomic<int> longest_wait_ms;  // device_impl.h
+}
 
 namespace quincunx::gl::testing {
 namespace {
@@ -454,6 +459,33 @@ TEST_F(ExternalSemaphores, AFrameWaitsForThemAndSignalsItsEnd) {
     EXPECT_FALSE(raised(resolved_fd, 0)) << "a refused frame signals nothing";
   }
   EXPECT_EQ(open_fds(), before);
+}
+
+TEST_F(ExternalSemaphores, OneThatIsNeverSignalledEndsInWords) {
+  const PretendImports driver;
+  reopen();
+  const int before = longest_wait_ms.exchange(200);
+  const Fd drawn_fd(eventfd(0, EFD_CLOEXEC));
+  Semaphore drawn = device_->import_semaphore(drawn_fd.get()).value();
+  const ResolvePlan plan =
+      plan_for({}, {.method = Method::kPoint, .output_extent = kOutput, .target_extent = kOutput}).value();
+  ResolveService service = ResolveService::create(*device_, plan).value();
+  const Image colour = device_->allocate(kOutput, plan.settings.colour).value();
+  const Image picture = device_->allocate(kOutput, PixelFormat::kRGBA8).value();
+  const FrameInputs inputs = {.colour = colour.view(), .render_extent = kOutput};
+  constexpr const char* kWords =
+      "OpenCL did not finish within 200 ms; a semaphore that it waits for may never have been signalled";
+  Semaphore* const waits = &drawn;
+  ASSERT_TRUE(service.dispatch(inputs, {.presented = picture.view()}, {.wait_semaphores = {&waits, 1}}).ok());
+  EXPECT_EQ(service.finish().message(), kWords);
+  Status status;
+  for (int frame = 0; frame < 100 && status.ok(); ++frame)
+    status = service.dispatch(inputs, {.presented = picture.view()}).status;
+  EXPECT_EQ(status.message(), kWords);
+  raise(drawn_fd);
+  longest_wait_ms = 30'000;
+  EXPECT_TRUE(service.finish().ok()) << "it arrived after all";
+  longest_wait_ms = before;
 }
 
 TEST_F(ExternalSemaphores, BadOnesAreNamed) {

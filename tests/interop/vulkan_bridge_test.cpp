@@ -8,6 +8,7 @@
 
 #include <dlfcn.h>
 
+#include <cstring>
 #include <optional>
 #include <vulkan/vulkan.hpp>
 
@@ -366,6 +367,51 @@ TEST_F(VulkanBridgeTest, BadCallsAreNamed) {
   ASSERT_TRUE(bridge->begin_present().ok());
   EXPECT_TRUE(contains(bridge->present(colour.as_image()).message(),
                        "picture has VkFormat 97 and must have 37 or 43"));
+}
+
+// Stands before Vulkan's function where a test is in a hurry.
+bool is_hurried = false;
+VkResult wait_for_fences(VkDevice device, std::uint32_t count, const VkFence* fences, VkBool32 all,
+                         std::uint64_t ns) {
+  EXPECT_LE(ns, 30'000'000'000u) << "a wait that may never end";
+  return VULKAN_HPP_DEFAULT_DISPATCHER.vkWaitForFences(device, count, fences, all,
+                                                       is_hurried ? 200'000'000 : ns);
+}
+PFN_vkVoidFunction device_function(VkDevice device, const char* name) {
+  return std::strcmp(name, "vkWaitForFences") == 0
+             ? reinterpret_cast<PFN_vkVoidFunction>(&wait_for_fences)
+             : VULKAN_HPP_DEFAULT_DISPATCHER.vkGetDeviceProcAddr(device, name);
+}
+PFN_vkVoidFunction instance_function(VkInstance instance, const char* name) {
+  return std::strcmp(name, "vkGetDeviceProcAddr") == 0
+             ? reinterpret_cast<PFN_vkVoidFunction>(&device_function)
+             : VULKAN_HPP_DEFAULT_DISPATCHER.vkGetInstanceProcAddr(instance, name);
+}
+
+TEST_F(VulkanBridgeTest, ASemaphoreThatIsNeverSignalledEndsInWords) {
+  BridgeSettings settings = all_planes(kTarget, kOutput);
+  settings.depth = settings.velocity = settings.reactive = false;
+  VulkanContext context = Engine::get().context();
+  context.get_instance_proc_addr = instance_function;
+  const auto bridge = VulkanBridge::create(context, *device_, settings).value();
+  EngineImage colour(settings.colour, false, kTarget);
+  const Bytes texels = random_texels(settings.colour, kTarget, 1);
+  Engine::get().wait(colour.fill(texels, kTarget));
+  const std::uint64_t never = ++Engine::get().value;
+  const VulkanFrame frame = {.colour = colour.as_image(), .drawn = {Engine::get().order, never}};
+  is_hurried = true;
+  Status status;
+  for (int i = 0; i < 4 && status.ok(); ++i)  // at the latest where a slot is needed again
+    status = bridge->import(frame, kTarget).status();
+  is_hurried = false;
+  EXPECT_EQ(status.code(), StatusCode::kDeviceFailure);
+  EXPECT_TRUE(contains(status.message(), "VulkanFrame::drawn, may never have been signalled"))
+      << status.message();
+  Engine::get().device.signalSemaphore(
+      ::vk::SemaphoreSignalInfo{.semaphore = Engine::get().order, .value = never});
+  const auto inputs = bridge->import(frame, kTarget);
+  ASSERT_TRUE(inputs.ok()) << inputs.status().message();
+  EXPECT_TRUE(download(inputs->colour, kTarget) == texels) << "it arrived after all";
 }
 
 // The same by fds, on a driver of its own memory, with and without semaphores.

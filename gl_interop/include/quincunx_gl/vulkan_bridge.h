@@ -12,7 +12,8 @@
 //
 // It needs a Vulkan 1.1 device made with VK_KHR_external_memory_fd, and with VK_KHR_external_semaphore_fd if it has
 // that. The caller's objects outlive the bridge. Calls come from one thread at a time. They submit to the Vulkan queue,
-// which nobody else uses meanwhile, and use OpenCL's queue. Built where Vulkan's headers are installed.
+// which nobody else uses meanwhile, and use OpenCL's queue. They return kDeviceFailure if a copy is not done in 30 s,
+// because its semaphore was never signalled, for example. Built where Vulkan's headers are installed.
 #pragma once
 
 #include <vulkan/vulkan_core.h>

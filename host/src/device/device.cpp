@@ -395,7 +395,12 @@ Result<Image> Device::allocate(Extent extent, PixelFormat format, Storage storag
 Status Device::finish() const {
   try {
     // rusticl 22.3 waits only for what was not flushed yet.
-    impl_->queue.enqueueMarkerWithWaitList();
+    cl::Event done;
+    impl_->queue.enqueueMarkerWithWaitList(nullptr, &done);
+    if (longest_wait_ms != 0) {
+      impl_->queue.flush();
+      wait_for(done);
+    }
     impl_->queue.finish();
     return {};
   } catch (...) {

@@ -2,6 +2,7 @@
 // The inside of a Device, its profile and its clock.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -50,6 +51,13 @@ struct Device::Impl {
 std::optional<std::size_t> choose_device(const std::string& selector, const std::vector<DeviceInfo>& infos);
 
 bool has_extension(const cl::Device& device, const std::string& extension);
+
+// How long the host waits for commands, in ms; 0: for ever, until the program first waits for a semaphore of another
+// API (external.cpp). One that is never signalled would hold the queue, and the host, for ever.
+extern std::atomic<int> longest_wait_ms;
+
+// Waits for a command that was flushed. Throws cl::Error, and StatusError after longest_wait_ms.
+void wait_for(const cl::Event& event);
 
 // Finds out which handles of other APIs the device takes, and its UUID.
 void learn_imports(const cl::Device& device, DeviceInfo& info);

@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -129,6 +131,28 @@ void learn_imports(const cl::Device& device, DeviceInfo& info) {
   }
   if (has_extension(device, "cl_khr_external_semaphore"))
     info.imports_semaphores = lists(device(), kSemaphoreImports, kSemaphoreFd);
+}
+
+std::atomic<int> longest_wait_ms = 0;
+
+void wait_for(const cl::Event& event) {
+  const int limit = longest_wait_ms;
+  if (limit == 0) {
+    event.wait();
+    return;
+  }
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(limit);
+  for (;;) {
+    const auto state = event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>();
+    if (state < CL_COMPLETE) throw cl::Error(state, "a command of the queue");
+    if (state == CL_COMPLETE) return;
+    if (std::chrono::steady_clock::now() > end) {
+      throw StatusError(Status::device(fmt::format(
+          "OpenCL did not finish within {} ms; a semaphore that it waits for may never have been signalled",
+          limit)));
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(20));
+  }
 }
 
 std::string uuid_text(const DeviceUuid& uuid) {
@@ -275,6 +299,9 @@ Semaphore::Semaphore(Semaphore&&) noexcept = default;
 Semaphore& Semaphore::operator=(Semaphore&&) noexcept = default;
 
 Status Semaphore::wait() {
+  constexpr int kLongestMs = 30'000;
+  int forever = 0;
+  longest_wait_ms.compare_exchange_strong(forever, kLongestMs);
   try {
     impl_->use(impl_->wait, "clEnqueueWaitSemaphoresKHR");
     return {};

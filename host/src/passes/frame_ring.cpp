@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "device/device_impl.h"
+
 namespace quincunx {
 namespace {
 
@@ -35,9 +37,7 @@ FrameRing::Slot& FrameRing::begin() {
   if (next_ - taken_ == kFrames) {
     Slot& oldest = slots_[taken_ % kFrames];
     // The device may still write its counter.
-    if (oldest.done() != nullptr && execution_status(oldest.done) > CL_COMPLETE) {
-      oldest.done.wait();
-    }
+    if (oldest.done() != nullptr && execution_status(oldest.done) > CL_COMPLETE) wait_for(oldest.done);
     ++taken_;
   }
   Slot& slot = slots_[next_ % kFrames];

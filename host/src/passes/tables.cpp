@@ -45,9 +45,8 @@ TableRing::Slot& TableRing::find(const TableKey& key) {
 
 // Only a caller eight viewports ahead of the device ever waits here.
 void TableRing::wait_for(Slot& slot) {
-  if (slot.written() != nullptr && slot.written.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() > CL_COMPLETE) {
-    slot.written.wait();
-  }
+  if (slot.written() != nullptr && slot.written.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() > CL_COMPLETE)
+    quincunx::wait_for(slot.written);
 }
 
 void TableRing::write(const cl::CommandQueue& queue, Slot& slot, std::size_t bytes) {

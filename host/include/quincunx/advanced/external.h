@@ -72,7 +72,8 @@ class QUINCUNX_API SharedMemory {
 };
 
 // A binary semaphore of another API: each signal of one side lets one wait of the other go on. One that is never
-// signalled blocks the queue for ever, as OpenCL has no time-out. Move-only.
+// signalled blocks the queue, as OpenCL has no time-out: once a wait was enqueued, calls that wait for the queue, such
+// as ResolveService::finish(), return kDeviceFailure after 30 s. Move-only.
 class QUINCUNX_API Semaphore {
  public:
   ~Semaphore();
