@@ -50,6 +50,9 @@ TEST(FileFuzz, RecordedSettings) {
   const TemporaryFolder folder;
   const std::string path = folder.file(tools::kSettingsFile),
                     good = tools::to_json(tools::RecordedSettings{});
+  std::string ended = good;  // a name in which a line ends
+  write(path, ended.replace(ended.find("grain"), 5, "gr\\nain"));
+  EXPECT_NE(tools::read_settings(folder.file("")).error().find("'filter.gr\\nain'"), std::string::npos);
   Random random(22);
   int taken = 0;
   for (int round = 0; round < rounds(); ++round) {

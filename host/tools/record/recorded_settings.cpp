@@ -174,8 +174,11 @@ Result<RecordedSettings> read_settings(const std::string& folder) {
   const Json known = json_of(RecordedSettings());
   std::string unknown = unknown_in(settings, known["settings"]);
   if (unknown.empty()) unknown = unknown_in(needs, known["needs"]);
-  if (!unknown.empty())
-    return Status::io(fmt::format("'{}' has a '{}' that this version does not know", path, unknown));
+  if (!unknown.empty()) {
+    const std::string quoted = Json(unknown).dump();  // on one line, whatever the name
+    return Status::io(fmt::format("'{}' has a '{}' that this version does not know", path,
+                                  quoted.substr(1, quoted.size() - 2)));
+  }
   each_need(recorded.needs, [&](const char* name, auto& value) { take(needs, name, value); });
   each_setting(recorded.settings, [&](const char* name, auto& value) { take(settings, name, value); });
   const Json device = json->value("device", Json());
