@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "frames/frame_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "catalog/scene_catalog.h"
@@ -199,6 +201,14 @@ gl::Bridge::Memory FrameSource::memory() const {
     memory.opencl_bytes += feed.bridge->memory().opencl_bytes;
   }
   return memory;
+}
+
+std::string crossing_text(const gl::Bridge& bridge) {
+  const gl::Bridge::Traffic& traffic = bridge.traffic();
+  return fmt::format("{}: {:.2f} ms and {:.1f} MB there, {:.2f} ms and {:.1f} MB back",
+                     gl::name_of(bridge.kind()), traffic.acquire_ms,
+                     1e-6 * static_cast<double>(traffic.bytes_in), traffic.present_ms,
+                     1e-6 * static_cast<double>(traffic.bytes_out));
 }
 
 std::uint64_t FrameSource::bytes_in() const {

@@ -260,6 +260,7 @@ void draw_panel(WindowSettings& settings, const FrameTrace& trace, const PanelFa
     draw_view_settings(settings);
     section("Cost");
     draw_frame_graph(trace, facts.target_ms);
+    ImGui::TextWrapped("%s", facts.crossing.c_str());
     draw_pass_times(trace);
     section("Files");
     draw_files(settings, facts);

@@ -27,6 +27,7 @@ struct PanelFacts {
   Extent render = {};
   Extent made = {};  // the picture's, before it is scaled to `output`
   Extent output = {};
+  std::string crossing;              // how the frame came to OpenCL and back
   double target_ms = 0;              // 0: none
   std::string method;                // that a controller chose; empty: that of the settings
   std::string reasons;               // why, lines of text; empty: no controller chose it

@@ -280,6 +280,7 @@ PanelFacts WindowSession::facts() {
   facts.render = view_.render;
   facts.output = picture_->output();
   facts.made = picture_->times().report.output_extent;
+  facts.crossing = crossing_text(picture_->source().bridge());
   facts.target_ms = 1000 / settings_.rate.target_fps;
   if (picture_->choice()) facts.method = name_of(picture_->choice()->method);
   if (paced_ && picture_->choice()) facts.reasons = paced_->pacing().reasons();
