@@ -70,10 +70,10 @@ quincunx_status report(quincunx_status code, const char* text) noexcept {
 quincunx_status report(const Status& status) {
   if (status.ok()) return QUINCUNX_OK;
   message = status.message();
-  if (status.code() ==
-      StatusCode::kInvalidArgument) {  // which may repeat a caller's name; others have a compiler's log
-    std::replace_if(
-        message.begin(), message.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; }, '?');
+  // It may repeat a caller's name, line ends too. Other messages may have a compiler's log, whose lines stay.
+  if (status.code() == StatusCode::kInvalidArgument) {
+    const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; };
+    std::replace_if(message.begin(), message.end(), is_control, '?');
   }
   return code_of(status.code());
 }

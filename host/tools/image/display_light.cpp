@@ -6,12 +6,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <string_view>
+
+#include "tools/program/command_line.h"
 
 namespace quincunx::tools {
 namespace {
@@ -119,11 +120,6 @@ bool are_rec709(const Chromaticities& c) {
                     [](float a, float b) { return std::abs(a - b) <= kAsGood; });
 }
 
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 // Linear spaces by their primaries, whatever a configuration calls them.
 struct LinearSpace {
   std::vector<std::string> names;  // the first is the usual one
@@ -159,7 +155,7 @@ float linear_of_kodak_log(float code) {
 ColourCurve curve_of(const std::string& name) {
   constexpr std::string_view kGamma = "gamma";
   constexpr float kMostGamma = 10;  // gamma22 is a space of somebody's
-  const std::string lower = lower_case(name);
+  const std::string lower = in_lower_case(name);
   if (lower == "srgb" || lower == "srgb_rec709_scene") return each_colour(linear_of_srgb);
   if (lower.starts_with(kGamma)) {
     float gamma = 0;
@@ -179,10 +175,10 @@ std::string near_names(const std::string& name) {
                                     "lin_p3d65", "sRGB",   "KodakLog"};
   for (const std::string& more : backend::colour_spaces())
     if (std::find(names.begin(), names.end(), more) == names.end()) names.push_back(more);
-  const std::string begin = lower_case(name.substr(0, 3));
+  const std::string begin = in_lower_case(name.substr(0, 3));
   std::vector<std::string> near;
   std::copy_if(names.begin(), names.end(), std::back_inserter(near),
-               [&](const std::string& one) { return lower_case(one).starts_with(begin); });
+               [&](const std::string& one) { return in_lower_case(one).starts_with(begin); });
   return fmt::format("{}", fmt::join(near.empty() ? names : near, ", "));
 }
 
@@ -194,10 +190,10 @@ Result<InputColour> InputColour::of(const std::string& path, const ImagePart& pa
   colour.straight_ = part.straight_alpha;
   colour.gain_ = part.gain;
   colour.name_ = named.empty() ? part.colour_space : named;
-  const std::string lower = lower_case(colour.name_);
+  const std::string lower = in_lower_case(colour.name_);
   for (const LinearSpace& space : linear_spaces()) {
     const bool named_so = std::any_of(space.names.begin(), space.names.end(),
-                                      [&](const std::string& one) { return lower_case(one) == lower; });
+                                      [&](const std::string& one) { return in_lower_case(one) == lower; });
     if (!named_so) continue;
     const bool told = named.empty() && part.chromaticities && are_rec709(space.primaries);
     const Chromaticities& primaries = told ? *part.chromaticities : space.primaries;
