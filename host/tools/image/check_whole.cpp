@@ -18,7 +18,7 @@
 
 #include "tools/image/image_reader.h"
 #include "tools/program/atomic_file.h"
-#include "tools/program/command_line.h"
+#include "tools/program/lower_case.h"
 
 namespace quincunx::tools {
 namespace {

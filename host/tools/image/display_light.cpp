@@ -12,7 +12,7 @@
 #include <iterator>
 #include <string_view>
 
-#include "tools/program/command_line.h"
+#include "tools/program/lower_case.h"
 
 namespace quincunx::tools {
 namespace {

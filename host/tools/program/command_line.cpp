@@ -99,12 +99,6 @@ std::string none_of(const std::string& word, const std::vector<std::string>& nam
   return fmt::format("'{}' is none of {}{}", word, fmt::join(names, ", "), did_you_mean(word, names));
 }
 
-std::string in_lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return text;
-}
-
 std::optional<double> number_in(const std::string& text) {
   double value = 0;
   const char* end = text.data() + text.size();

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "quincunx/advanced/extent.h"
+#include "tools/program/lower_case.h"
 
 namespace quincunx::tools {
 
@@ -239,8 +240,6 @@ const std::map<std::string, Enum>& choices() {
   }();
   return by_name;
 }
-
-std::string in_lower_case(std::string text);
 
 // One of a few names, whatever the case of its letters; set() gets the name's value.
 template <typename Value, typename Set>

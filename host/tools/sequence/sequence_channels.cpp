@@ -8,7 +8,7 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "tools/program/command_line.h"
+#include "tools/program/lower_case.h"
 
 namespace quincunx::tools {
 namespace {
