@@ -283,6 +283,39 @@ TEST_F(Formats, AGammaHasItsNumber) {
   EXPECT_EQ(opened(path).header().parts[0].colour_space, "Gamma1.7");
 }
 
+// An ICC profile of version 2 that has a name and nothing else.
+std::string icc_profile(const std::string& name) {
+  const auto big = [](std::uint32_t value) {
+    const std::string little = bytes_of(value);
+    return std::string(little.rbegin(), little.rend());
+  };
+  const std::string text = "desc" + big(0) + big(static_cast<std::uint32_t>(name.size()) + 1) + name +
+                           std::string(1 + 4 + 4 + 2 + 1 + 67, '\0');
+  std::string header(128, '\0');
+  header.replace(8, 1, "\x02").replace(12, 12, "mntrRGB XYZ ").replace(36, 4, "acsp");
+  const std::string rest = big(1) + "desc" + big(144) + big(static_cast<std::uint32_t>(text.size())) + text;
+  return header.replace(0, 4, big(static_cast<std::uint32_t>(header.size() + rest.size()))) + rest;
+}
+
+// Light that would come out in other colours is told, and sRGB's own profile is no news.
+TEST_F(Formats, AnIccProfileThatIsNotAppliedIsTold) {
+  const std::string path = folder_.file("f.0001.jpg");
+  for (const std::string name : {"Display P3", "sRGB IEC61966-2.1"}) {
+    ASSERT_TRUE(tools::write_picture(path, kRender, codes().data()).ok());
+    std::string jpeg = read_file(path);
+    const std::string segment = std::string("ICC_PROFILE\0\1\1", 14) + icc_profile(name);
+    const auto length = static_cast<std::uint16_t>(segment.size() + 2);
+    jpeg.insert(2, std::string("\xff\xe2") + static_cast<char>(length >> 8) +
+                       static_cast<char>(length & 255) + segment);
+    std::ofstream(path, std::ios::binary) << jpeg;
+    const auto result = resolve(fmt::format("'{{}}/f.%04d.jpg' --out '{{}}/j.%04d.exr' {}", kSame));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const bool is_told =
+        result.err.find("sRGB (its ICC profile 'Display P3' is not applied)") != std::string::npos;
+    EXPECT_EQ(is_told, name == "Display P3") << result.err;
+  }
+}
+
 // What the exposures of all programs that changed it have multiplied is taken back.
 TEST_F(Formats, ARadianceFileIsDividedByItsExposures) {
   std::string texels;

@@ -209,6 +209,8 @@ Result<InputColour> InputColour::of(const std::string& path, const ImagePart& pa
     return colour;
   }
   colour.curve_ = curve_of(colour.name_);
+  if (colour.curve_ && named.empty() && !part.icc_profile.empty())
+    colour.name_ += fmt::format(" (its ICC profile '{}' is not applied)", part.icc_profile);
   if (colour.curve_) return colour;
   if (named.empty()) {
     return Status::io(

@@ -177,6 +177,8 @@ ImagePart describe(const OIIO::ImageSpec& spec, const std::string& format, const
     if (!is_pfm) part.colour_space = spec["oiio:ColorSpace"].get(part.colour_space);
     if (const float gamma = spec["oiio:Gamma"].get(0.f); gamma > 0 && part.colour_space.starts_with("Gamma"))
       part.colour_space = fmt::format("Gamma{:.3g}", gamma);
+    const std::string profile = spec["ICCProfile:profile_description"].get();
+    if (!OIIO::Strutil::icontains(profile, "sRGB")) part.icc_profile = OIIO::Strutil::strip(profile);
     if (const std::string why = why_not(spec); !why.empty()) throw std::runtime_error(why);
   }
   if (const auto* found = spec.find_attribute("chromaticities", kChromaticitiesType))
