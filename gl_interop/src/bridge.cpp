@@ -140,14 +140,12 @@ Result<std::unique_ptr<Bridge>> make_host_copy(const Device& device, const Bridg
 Result<Device> open_device(const Context& context, const std::string& selector, Interop interop) {
   if (interop == Interop::kCopy) return Device::open(selector);
 
-  std::vector<DeviceInfo> candidates;
-  if (selector.empty()) {
-    candidates = Device::list();
-  } else {
-    auto named = Device::open(selector);
-    if (!named.ok()) return named;
-    candidates.push_back(named->info());
+  std::optional<Result<Device>> named;  // opened once: a fault of its profile is told once
+  if (!selector.empty()) {
+    named = Device::open(selector);
+    if (!named->ok()) return *named;
   }
+  const auto candidates = named ? std::vector<DeviceInfo>{named->value().info()} : Device::list();
   std::string why;
   if (interop != Interop::kExternal) {
     if (auto device = open_sharing(context, candidates, &why)) return *std::move(device);
@@ -155,7 +153,7 @@ Result<Device> open_device(const Context& context, const std::string& selector, 
   if (interop != Interop::kGl) {
     for (const DeviceInfo& candidate : candidates) {
       if (candidate.imports_opaque_fds && candidate.uuid == gl_device_uuid())
-        return Device::open(std::to_string(candidate.index));
+        return named ? *named : Device::open(std::to_string(candidate.index));
     }
   }
   if (interop == Interop::kGl) {
@@ -164,7 +162,7 @@ Result<Device> open_device(const Context& context, const std::string& selector, 
                     "'copy' or 'auto'",
                     context.info().renderer, why.empty() ? "there is none" : why));
   }
-  return Device::open(selector);
+  return named ? *named : Device::open(selector);
 }
 
 const char* name_of(Interop interop) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // quincunx-render: draws a scene at a dynamic resolution and makes the picture from it.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -84,6 +86,27 @@ Result<std::string> choose_first(const RenderOptions& options, const std::option
   return "At the first frame, before any was timed:\n" + pacing->reasons();
 }
 
+// Returns the way of the plan's frames to OpenCL and back on this machine, what it costs, and why it is chosen.
+Result<std::string> crossing_of(const Result<gl::Context>& context, const Result<Device>& device,
+                                const ResolvePlan& plan, gl::Interop interop) {
+  if (!context.ok()) return context.status();
+  if (!device.ok()) return device.status();
+  gl::BridgeSettings settings = gl::bridge_settings(plan);
+  settings.interop = interop;
+  auto made = gl::Bridge::create(context.value(), device.value(), settings);
+  if (!made.ok()) return made.status();
+  gl::Bridge& bridge = *made.value();
+  for (int slot = 0; slot < bridge.slots(); ++slot) {  // the first times are the longest
+    if (auto targets = bridge.begin_draw(slot, settings.target_extent); !targets.ok())
+      return targets.status();
+    if (Status status = bridge.submit(slot); !status.ok()) return status;
+    if (auto frame = bridge.acquire(slot); !frame.ok()) return frame.status();
+    if (auto output = bridge.begin_present(); !output.ok()) return output.status();
+    if (Status status = bridge.present(); !status.ok()) return status;
+  }
+  return fmt::format("{} ({})", crossing_text(bridge), bridge.reason());
+}
+
 int explain(const RenderOptions& options) {
   auto source = source_settings_for(options);
   if (!source.ok()) return tools::fail(source.status());
@@ -103,16 +126,23 @@ int explain(const RenderOptions& options) {
     if (!focus.ok()) return tools::fail(focus.status());
     if (focus.value()) settings.focus = focus.value()->settings();
   }
-  const Result<Device> device = Device::open(options.device);
+  spdlog::set_level(
+      std::max(spdlog::get_level(), spdlog::level::warn));  // the text has the bridge's line, too
+  Device::list();  // some drivers want OpenCL enumerated before a GL context exists
+  const auto context = gl::Context::create(source->platform, source->api);
+  const auto device = context.ok() ? gl::open_device(context.value(), source->device, source->interop)
+                                   : Device::open(source->device);
   std::optional<FoundFront> found;
   if (device.ok()) found = find_front(front_key(device->info(), scene->name));
   const auto first = choose_first(options, found, settings);
   if (!first.ok()) return tools::fail(first.status());
   auto plan = plan_for(needs_of(scene.value()), settings);
   if (!plan.ok()) return tools::fail(plan.status());
-  fmt::print("Scene          {}: {}\n{}{}{}{}{}", scene->name, scene->summary, front_text(found),
-             first.value(), tools::device_lines(device), explain(source->parts, has_particles),
-             plan->explain());
+  const auto crossing = crossing_of(context, device, plan.value(), source->interop);
+  fmt::print("Scene          {}: {}\n{}{}{}Frames         {}\n{}{}", scene->name, scene->summary,
+             front_text(found), first.value(), tools::device_lines(device),
+             crossing.ok() ? crossing.value() : "do not cross: " + crossing.status().message(),
+             explain(source->parts, has_particles), plan->explain());
   return tools::kDone;
 }
 

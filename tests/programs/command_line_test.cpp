@@ -55,6 +55,10 @@ TEST_F(CommandLine, ExplainPlansWithoutRendering) {
   EXPECT_EQ(moving.exit_code, 0) << moving.err;
   EXPECT_NE(moving.out.find("WEIGHT=1"), std::string::npos) << moving.out;
   EXPECT_NE(moving.out.find("Profile        "), std::string::npos) << moving.out;
+  const auto crossing = moving.out.find("Frames         ");
+  ASSERT_NE(crossing, std::string::npos) << moving.out;
+  const std::string line = moving.out.substr(crossing, moving.out.find('\n', crossing) - crossing);
+  EXPECT_NE(line.find(" ms and 3.7 MB back ("), std::string::npos) << line;
   const ProgramResult none_there = run("--explain --scene wheel --device nowhere");
   EXPECT_EQ(none_there.exit_code, 0) << none_there.err;
   EXPECT_NE(none_there.out.find("Device         none: no OpenCL device matches 'nowhere'"), std::string::npos)
