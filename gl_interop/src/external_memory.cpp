@@ -160,7 +160,7 @@ void Exporter::probe(const Device& device) const {
   try {
     seen = read_probe(own.queue(), shared.cl->memory(), "OpenGL");
   } catch (...) {
-    static_cast<void>(new ExternalBuffer(std::move(shared)));
+    keep_for_ever(std::make_shared<ExternalBuffer>(std::move(shared)));
     throw;
   }
   if (seen != from_gl) throw InteropError("OpenCL read other bytes than OpenGL wrote");

@@ -5,7 +5,9 @@
 
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <thread>
+#include <utility>
 
 namespace quincunx::gl {
 namespace {
@@ -49,8 +51,15 @@ Device probe_device(const Device& device) {
   return std::move(borrowed).value();
 }
 
+void keep_for_ever(std::shared_ptr<const void> used) {
+  static std::mutex mutex;
+  static auto* const kept = new std::vector<std::shared_ptr<const void>>;
+  const std::lock_guard lock(mutex);
+  kept->push_back(std::move(used));
+}
+
 std::vector<std::uint8_t> read_probe(cl_command_queue queue, cl_mem memory, const char* peer) {
-  auto seen = std::make_unique<std::vector<std::uint8_t>>(kProbeBytes);
+  const auto seen = std::make_shared<std::vector<std::uint8_t>>(kProbeBytes);
   cl_event event = nullptr;
   check_cl(clEnqueueReadBuffer(queue, memory, CL_FALSE, 0, kProbeBytes, seen->data(), 0, nullptr, &event),
            "clEnqueueReadBuffer");
@@ -59,7 +68,7 @@ std::vector<std::uint8_t> read_probe(cl_command_queue queue, cl_mem memory, cons
     check_cl(clFlush(queue), "clFlush");
     wait_for(read, peer);
   } catch (...) {
-    static_cast<void>(seen.release());  // it may be written yet
+    keep_for_ever(seen);  // it may be written yet
     throw;
   }
   return std::move(*seen);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "cl_handle.h"
@@ -16,6 +17,9 @@ std::vector<std::uint8_t> probe_bytes(std::uint32_t seed);
 
 // On a queue of its own: one that waits for ever would hold all frames. Throws InteropError.
 Device probe_device(const Device& device);
+
+// Keeps what a queue that waits for ever may use yet, as long as the program runs.
+void keep_for_ever(std::shared_ptr<const void> used);
 
 // Returns the first kProbeBytes of `memory`, once `peer`, "OpenGL", has signalled. Throws InteropError where that does
 // not come; the queue may then wait for it yet, and use the memory.
