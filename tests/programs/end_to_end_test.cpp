@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "program_run.h"
+#include "skip.h"
 #include "tools/image/image_io.h"
 #include "tools/own_cache.h"
 
@@ -65,6 +67,22 @@ TEST_F(EndToEnd, ScaleOneWithoutJitterIsTheIdentity) {
       }
     }
   }
+}
+
+// Where Vulkan's loader cannot be loaded, its drivers can.
+TEST_F(EndToEnd, ExternalMemoryNeedsNoLoader) {
+  const std::string scene = "-q --output 160x90 --scene wheel --scale 0.71 --frames 3 ";
+  const ProgramResult usual = run_program(folder_, scene + "--interop external --out '{}/usual.%d.png'");
+  if (usual.exit_code != 0) QUINCUNX_SKIP(usual.err);
+  std::filesystem::create_directory(path("lib"));
+  std::ofstream(path("lib/libvulkan.so.1")) << "no library";
+  const std::string without =
+      fmt::format("LD_LIBRARY_PATH='{}':$LD_LIBRARY_PATH {}", path("lib"), QUINCUNX_PROGRAM);
+  const ProgramResult hidden =
+      run_program(folder_, scene + "--interop external --json --out '{}/hidden.%d.png'", without.c_str());
+  ASSERT_EQ(hidden.exit_code, 0) << hidden.err;
+  EXPECT_EQ(nlohmann::json::parse(hidden.out)["interop"], "external");
+  EXPECT_EQ(image("hidden.2.png").pixels, image("usual.2.png").pixels);
 }
 
 TEST_F(EndToEnd, TwoRunsAgreeBitForBit) {
