@@ -12,7 +12,7 @@
 #endif
 
 #if defined(QUINCUNX_KEEP_MODULES)
-extern "C" int dlclose(void*) noexcept {
+extern "C" __attribute__((visibility("default"))) int dlclose(void*) noexcept {
   return 0;
 }
 #endif

@@ -41,7 +41,7 @@ quincunx_content ControlCaller::content() {
   for (double* share : {&of.moving, &of.apart, &of.thin, &of.light, &of.zoom})
     *share = one_in(12) ? wild(random_, 1) : static_cast<double>(random_.unit());
   of.speed_px = wild(random_, 5);
-  of.cut = wild_int(random_, 1) - 1;
+  of.cut = wild_int(random_, 1, 0);
   return of;
 }
 
@@ -62,7 +62,7 @@ void ControlCaller::make_controller() {
   const char* const methods[] = {names[0].c_str(), or_null(names[1].c_str())};
   if (one_in(2)) {
     from.value.methods = or_null(methods);
-    from.value.method_count = one_in(8) ? -wild_int(random_, 1) % 2 : random_.below(3);
+    from.value.method_count = one_in(8) ? wild_int(random_, 1, -1) % 2 : random_.below(3);
   }
   makes(controllers_, [&](auto** to) { return quincunx_controller_create(sized(from), to); });
 }
@@ -92,7 +92,7 @@ void ControlCaller::observe() {
   for (double* ms : {&timing.value.gpu_ms, &timing.value.cpu_ms, &timing.value.interval_ms,
                      &timing.value.blur_px, &timing.value.resolve_ms})
     *ms = one_in(6) ? wild(random_, 16) : 20 * static_cast<double>(random_.unit());
-  timing.value.queued = wild_int(random_, 3) - 1;
+  timing.value.queued = wild_int(random_, 3, 0);
   if (one_in(2)) timing.value.content = sized(shows);
   worked(quincunx_controller_observe(controllers_.any(), sized(timing)));
   std::array<double, QUINCUNX_SCENE_CLASSES> mix = {-1};
@@ -125,8 +125,6 @@ void ControlCaller::use_front() {
   ASSERT_EQ(text != nullptr, of != nullptr);
   EXPECT_EQ(quincunx_front_summary(of) != nullptr, of != nullptr);
   const std::string json = text != nullptr ? word(text) : "";
-  makes(fronts_,
-        [&](auto** to) { return quincunx_front_parse(text != nullptr ? json.c_str() : nullptr, to); });
   std::array<double, QUINCUNX_SCENE_CLASSES> mix = {1};
   if (one_in(4)) mix[1] = wild(random_, 1);
   const std::string name = method();
@@ -141,6 +139,8 @@ void ControlCaller::use_front() {
       })) {
     EXPECT_TRUE(std::isfinite(answer) && answer >= 0) << answer;
   }
+  makes(fronts_,
+        [&](auto** to) { return quincunx_front_parse(text != nullptr ? json.c_str() : nullptr, to); });
 }
 
 void ControlCaller::use_followers() {

@@ -51,10 +51,10 @@ inline double wild(Random& random, double plausible) {
   }
 }
 
-inline int wild_int(Random& random, int plausible) {
+inline int wild_int(Random& random, int plausible, int first = 1) {
   constexpr int kOdd[] = {0, 1, 2, 7, -1, -2, 32768, 32769, 2147483647, -2147483647 - 1};
   return random.below(6) == 0 ? kOdd[random.below(static_cast<int>(std::size(kOdd)))]
-                              : 1 + random.below(plausible);
+                              : first + random.below(plausible);
 }
 
 inline std::size_t place_in(const std::string& text, Random& random) {
