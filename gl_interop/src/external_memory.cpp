@@ -158,7 +158,7 @@ void Exporter::probe(const Device& device) const {
   if (order) order->cl_waits();
   check_status(shared.cl->acquire());
   try {
-    seen = read_probe(own.queue(), shared.cl->memory(), "OpenGL");
+    seen = read_probe(own, shared.cl->memory(), "OpenGL");
   } catch (...) {
     keep_for_ever(std::make_shared<ExternalBuffer>(std::move(shared)));
     throw;

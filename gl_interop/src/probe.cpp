@@ -58,16 +58,18 @@ void keep_for_ever(std::shared_ptr<const void> used) {
   kept->push_back(std::move(used));
 }
 
-std::vector<std::uint8_t> read_probe(cl_command_queue queue, cl_mem memory, const char* peer) {
+std::vector<std::uint8_t> read_probe(const Device& own, cl_mem memory, const char* peer) {
   const auto seen = std::make_shared<std::vector<std::uint8_t>>(kProbeBytes);
   cl_event event = nullptr;
-  check_cl(clEnqueueReadBuffer(queue, memory, CL_FALSE, 0, kProbeBytes, seen->data(), 0, nullptr, &event),
-           "clEnqueueReadBuffer");
+  check_cl(
+      clEnqueueReadBuffer(own.queue(), memory, CL_FALSE, 0, kProbeBytes, seen->data(), 0, nullptr, &event),
+      "clEnqueueReadBuffer");
   const ClEvent read = ClEvent::adopt(event);
   try {
-    check_cl(clFlush(queue), "clFlush");
+    check_cl(clFlush(own.queue()), "clFlush");
     wait_for(read, peer);
   } catch (...) {
+    keep_for_ever(std::make_shared<Device>(own));
     keep_for_ever(seen);  // it may be written yet
     throw;
   }

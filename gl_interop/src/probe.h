@@ -22,7 +22,7 @@ Device probe_device(const Device& device);
 void keep_for_ever(std::shared_ptr<const void> used);
 
 // Returns the first kProbeBytes of `memory`, once `peer`, "OpenGL", has signalled. Throws InteropError where that does
-// not come; the queue may then wait for it yet, and use the memory.
-std::vector<std::uint8_t> read_probe(cl_command_queue queue, cl_mem memory, const char* peer);
+// not come; the queue of `own` may then wait for it yet, and use the memory.
+std::vector<std::uint8_t> read_probe(const Device& own, cl_mem memory, const char* peer);
 
 }  // namespace quincunx::gl

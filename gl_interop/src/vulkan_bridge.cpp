@@ -470,7 +470,7 @@ void VulkanBridge::Impl::probe() {
     submit(to_and_fro, true, {}, {});
     give_to_cl(to_and_fro);
     try {
-      seen = read_probe(own.queue(), to_and_fro.cl->memory(), "Vulkan");
+      seen = read_probe(own, to_and_fro.cl->memory(), "Vulkan");
     } catch (...) {
       leave(to_and_fro);
       leave(second);
@@ -490,7 +490,7 @@ void VulkanBridge::Impl::probe() {
     submit(to_and_fro, false, {}, {});
     finish_copy(to_and_fro);
     check_status(second.cl->acquire());
-    if (read_probe(own.queue(), second.cl->memory(), "Vulkan") != from_cl)
+    if (read_probe(own, second.cl->memory(), "Vulkan") != from_cl)
       throw InteropError("Vulkan read other bytes than OpenCL wrote");
   } catch (...) {
     destroy(to_and_fro);

@@ -126,8 +126,8 @@ int explain(const RenderOptions& options) {
     if (!focus.ok()) return tools::fail(focus.status());
     if (focus.value()) settings.focus = focus.value()->settings();
   }
-  spdlog::set_level(
-      std::max(spdlog::get_level(), spdlog::level::warn));  // the text has the bridge's line, too
+  // The bridge's line in the log is in the text, too.
+  spdlog::set_level(std::max(spdlog::get_level(), spdlog::level::warn));
   Device::list();  // some drivers want OpenCL enumerated before a GL context exists
   const auto context = gl::Context::create(source->platform, source->api);
   const auto device = context.ok() ? gl::open_device(context.value(), source->device, source->interop)
