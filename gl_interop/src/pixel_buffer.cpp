@@ -102,12 +102,17 @@ PixelBuffer::~PixelBuffer() {
 
 // Waits until OpenCL is done with the memory that GL is about to free.
 void PixelBuffer::settle() noexcept {
-  cl_int code = CL_SUCCESS;
-  if (transfer() == Transfer::kZeroCopy && host_owns_) {
-    code = clEnqueueUnmapMemObject(device_.queue(), cl_buffer(), own_bytes(), 0, nullptr, nullptr);
-    if (code != CL_SUCCESS) log_release_failure(code);
+  const auto unmap = [this] {
+    return transfer() == Transfer::kZeroCopy && host_owns_
+               ? clEnqueueUnmapMemObject(device_.queue(), cl_buffer(), own_bytes(), 0, nullptr, nullptr)
+               : CL_SUCCESS;
+  };
+  const bool unmapped = unmap() == CL_SUCCESS;
+  Status done = device_.finish();
+  if (!unmapped && done.ok()) {  // once more, with an empty queue: what stays mapped, the driver never frees
+    if (const cl_int code = unmap(); code != CL_SUCCESS) log_release_failure(code);
+    done = device_.finish();
   }
-  const Status done = device_.finish();
   if (done.ok()) return;
   log_line(LogLevel::kWarning, fmt::format("interop: {}", done.message()));
   PixelMemory::never_free(memory_);  // a device that does not answer may still be at work
