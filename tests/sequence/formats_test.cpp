@@ -221,22 +221,41 @@ std::string bytes_of(const Value& value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
+// An ICC profile of version 2 that has a name and nothing else.
+std::string icc_profile(const std::string& name) {
+  const auto big = [](std::uint32_t value) {
+    const std::string little = bytes_of(value);
+    return std::string(little.rbegin(), little.rend());
+  };
+  const std::string text = "desc" + big(0) + big(static_cast<std::uint32_t>(name.size()) + 1) + name +
+                           std::string(1 + 4 + 4 + 2 + 1 + 67, '\0');
+  std::string header(128, '\0');
+  header.replace(8, 1, "\x02").replace(12, 12, "mntrRGB XYZ ").replace(36, 4, "acsp");
+  const std::string rest = big(1) + "desc" + big(144) + big(static_cast<std::uint32_t>(text.size())) + text;
+  return header.replace(0, 4, big(static_cast<std::uint32_t>(header.size() + rest.size()))) + rest;
+}
+
 using Tags = std::vector<std::pair<std::uint16_t, std::uint32_t>>;
 
-// A TIFF of kRender in one strip: codes of `bits` with `channels` each.
-std::string tiff_of(std::uint32_t bits, std::uint32_t channels, Tags tags, const std::string& pixels) {
-  constexpr std::uint16_t kLong = 4;
+// A TIFF of kRender in one strip: codes of `bits` with `channels` each, and an ICC profile.
+std::string tiff_of(std::uint32_t bits, std::uint32_t channels, Tags tags, const std::string& pixels,
+                    const std::string& profile = "") {
+  constexpr std::uint16_t kLong = 4, kBytes = 7, kProfile = 34675;
   const auto size = static_cast<std::uint32_t>(pixels.size());
+  const auto profile_size = static_cast<std::uint32_t>(profile.size());
   tags.insert(tags.end(),
               {{256, 16}, {257, 12}, {258, bits}, {259, 1}, {277, channels}, {278, 12}, {279, size}});
-  const auto first = static_cast<std::uint32_t>(8 + 2 + (tags.size() + 1) * 12 + 4);
+  const std::size_t entries = tags.size() + (profile.empty() ? 1 : 2);
+  const auto first = static_cast<std::uint32_t>(8 + 2 + entries * 12 + 4);
   tags.emplace_back(273, first);
+  if (!profile.empty()) tags.emplace_back(kProfile, first + size);
   std::sort(tags.begin(), tags.end());
   std::string tiff("II*\0\x8\0\0\0", 8);
   tiff += bytes_of(static_cast<std::uint16_t>(tags.size()));
   for (const auto& [tag, value] : tags)
-    tiff += bytes_of(tag) + bytes_of(kLong) + bytes_of(std::uint32_t{1}) + bytes_of(value);
-  return tiff + bytes_of(std::uint32_t{0}) + pixels;
+    tiff += tag == kProfile ? bytes_of(tag) + bytes_of(kBytes) + bytes_of(profile_size) + bytes_of(value)
+                            : bytes_of(tag) + bytes_of(kLong) + bytes_of(std::uint32_t{1}) + bytes_of(value);
+  return tiff + bytes_of(std::uint32_t{0}) + pixels + profile;
 }
 constexpr std::uint16_t kPhotometric = 262, kSampleFormat = 339;
 
@@ -283,36 +302,28 @@ TEST_F(Formats, AGammaHasItsNumber) {
   EXPECT_EQ(opened(path).header().parts[0].colour_space, "Gamma1.7");
 }
 
-// An ICC profile of version 2 that has a name and nothing else.
-std::string icc_profile(const std::string& name) {
-  const auto big = [](std::uint32_t value) {
-    const std::string little = bytes_of(value);
-    return std::string(little.rbegin(), little.rend());
-  };
-  const std::string text = "desc" + big(0) + big(static_cast<std::uint32_t>(name.size()) + 1) + name +
-                           std::string(1 + 4 + 4 + 2 + 1 + 67, '\0');
-  std::string header(128, '\0');
-  header.replace(8, 1, "\x02").replace(12, 12, "mntrRGB XYZ ").replace(36, 4, "acsp");
-  const std::string rest = big(1) + "desc" + big(144) + big(static_cast<std::uint32_t>(text.size())) + text;
-  return header.replace(0, 4, big(static_cast<std::uint32_t>(header.size() + rest.size()))) + rest;
-}
-
 // Light that would come out in other colours is told, and sRGB's own profile is no news.
 TEST_F(Formats, AnIccProfileThatIsNotAppliedIsTold) {
-  const std::string path = folder_.file("f.0001.jpg");
+  const std::string linear(static_cast<std::size_t>(kRender.area()) * sizeof(float), '\0');
   for (const std::string name : {"Display P3", "sRGB IEC61966-2.1"}) {
-    ASSERT_TRUE(tools::write_picture(path, kRender, codes().data()).ok());
-    std::string jpeg = read_file(path);
-    const std::string segment = std::string("ICC_PROFILE\0\1\1", 14) + icc_profile(name);
+    const std::string profile = icc_profile(name), picture = folder_.file("f.0001.jpg");
+    ASSERT_TRUE(tools::write_picture(picture, kRender, codes().data()).ok());
+    std::string jpeg = read_file(picture);
+    const std::string segment = std::string("ICC_PROFILE\0\1\1", 14) + profile;
     const auto length = static_cast<std::uint16_t>(segment.size() + 2);
     jpeg.insert(2, std::string("\xff\xe2") + static_cast<char>(length >> 8) +
                        static_cast<char>(length & 255) + segment);
-    std::ofstream(path, std::ios::binary) << jpeg;
-    const auto result = resolve(fmt::format("'{{}}/f.%04d.jpg' --out '{{}}/j.%04d.exr' {}", kSame));
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    const bool is_told =
-        result.err.find("sRGB (its ICC profile 'Display P3' is not applied)") != std::string::npos;
-    EXPECT_EQ(is_told, name == "Display P3") << result.err;
+    std::ofstream(picture, std::ios::binary) << jpeg;
+    std::ofstream(folder_.file("f.0001.tif"), std::ios::binary)
+        << tiff_of(32, 1, {{kPhotometric, 1}, {kSampleFormat, 3}}, linear, profile);
+    for (const auto& [ending, space] : {std::pair("jpg", "sRGB"), std::pair("tif", "linear")}) {
+      const auto result =
+          resolve(fmt::format("'{{}}/f.%04d.{0}' --out '{{}}/{0}.%04d.exr' {1}", ending, kSame));
+      ASSERT_EQ(result.exit_code, 0) << result.err;
+      const bool is_told = result.err.find(fmt::format("{} (its ICC profile 'Display P3' is not applied)",
+                                                       space)) != std::string::npos;
+      EXPECT_EQ(is_told, name == "Display P3") << result.err;
+    }
   }
 }
 

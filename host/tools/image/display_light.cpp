@@ -189,6 +189,7 @@ Result<InputColour> InputColour::of(const std::string& path, const ImagePart& pa
   InputColour colour;
   colour.straight_ = part.straight_alpha;
   colour.gain_ = part.gain;
+  if (named.empty()) colour.unused_profile_ = part.icc_profile;
   colour.name_ = named.empty() ? part.colour_space : named;
   const std::string lower = in_lower_case(colour.name_);
   for (const LinearSpace& space : linear_spaces()) {
@@ -209,8 +210,6 @@ Result<InputColour> InputColour::of(const std::string& path, const ImagePart& pa
     return colour;
   }
   colour.curve_ = curve_of(colour.name_);
-  if (colour.curve_ && named.empty() && !part.icc_profile.empty())
-    colour.name_ += fmt::format(" (its ICC profile '{}' is not applied)", part.icc_profile);
   if (colour.curve_) return colour;
   if (named.empty()) {
     return Status::io(
@@ -222,7 +221,11 @@ Result<InputColour> InputColour::of(const std::string& path, const ImagePart& pa
 }
 
 std::string InputColour::name() const {
-  return has_gain() ? fmt::format("{}, times {:.4g}", name_, fmt::join(gain_, " ")) : name_;
+  std::string text = name_;
+  if (has_gain()) text += fmt::format(", times {:.4g}", fmt::join(gain_, " "));
+  if (!unused_profile_.empty())
+    text += fmt::format(" (its ICC profile '{}' is not applied)", unused_profile_);
+  return text;
 }
 
 void InputColour::apply(std::span<float> rgba) const {

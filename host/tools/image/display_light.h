@@ -39,6 +39,8 @@ class InputColour {
 
   // Whether nothing is to be done.
   bool is_light() const { return !curve_ && !matrix_ && !straight_ && !has_gain(); }
+  // Whether the file's user should hear its name.
+  bool is_news() const { return !is_light() || !unused_profile_.empty(); }
   std::string name() const;
 
   void apply(std::span<float> rgba) const;
@@ -47,6 +49,7 @@ class InputColour {
   bool has_gain() const { return gain_ != ImagePart().gain; }
 
   std::string name_;
+  std::string unused_profile_;  // the name of an ICC profile that says something else
   ColourCurve curve_;
   std::array<float, 3> gain_ = ImagePart().gain;  // after the curve
   std::optional<std::array<float, 9>> matrix_;    // row by row; after the gain

@@ -100,7 +100,7 @@ Result<SequenceFormat> settle(const SequenceInput& input, const std::string& fir
   format.colour_space = input.colour_space;
   const auto light = InputColour::of(first_path, first.parts[picture->part], input.colour_space);
   if (!light.ok()) return light.status();
-  if (!light->is_light()) format.converted_from = light->name();
+  if (light->is_news()) format.converted_from = light->name();
   if (Status status = settle_motion(input, first_path, first, attributes, picture.value(), format);
       !status.ok())
     return status;
