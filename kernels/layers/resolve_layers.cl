@@ -74,9 +74,9 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     const NearestSamples nearest = find_nearest_samples(&params, positions, x, row, tile);
     const LayeredPixels pixels = find_layers(depth, depth_layout, &params, splits, open_trust, &nearest);
     Reprojections motion = load_reprojections(&params, reprojection, &nearest);
-    const BothLayers fetched_both = fetch_both(&pixels, &past, depth1, tile, layer, &motion, x, y);
+    const FetchedLayers far = fetch_far(&pixels, &past, depth1, tile, &motion, x, y);
     LaneFloat known_alpha;
-    const FetchedHistory fetched = known_far(&pixels, &fetched_both.far, &motion, &known_alpha);
+    const FetchedHistory fetched = known_far(&pixels, &far, &motion, &known_alpha);
     Evidence evidence = limit_confidence(&fetched, &motion);
     const RowLight row_light = light_of_row(light, &params, exposure->change, x, y);
     reject_by_light(&evidence, row_light);
@@ -87,7 +87,7 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     // What nothing is known of, and no sample shows, is as transparent as what hides it.
     const LaneTexels held = held_samples(samples);
     known_alpha = select(known_alpha, last_channels(held), are_valid(held) & (fetched.confidence == 0.0f));
-    const LayerSources* from = &fetched_both.far.from;
+    const LayerSources* from = &far.from;
     const Positions from_x = {from->x, from->fraction_x}, from_y = {from->y, from->fraction_y};
     known_alpha = follow_alphas(colour, &frame, past.far, past.alpha, nearest_texels(from_x), nearest_texels(from_y),
                                 nearest.x, nearest.y, known_alpha, mask_not(pixels.is_split));
@@ -123,7 +123,8 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     near_tile.phase_y = layer.phase_y;
     const NearestSamples nearest_near = find_nearest_samples(&params, positions, x, row, near_tile);
     const float cut = light[tile_index].new_cut;
-    KnownLayers near = known_near(&pixels, &fetched_both.near, row_light, cut);
+    const FetchedLayers fetched_near = fetch_near(&pixels, &past, depth1, layer, x, y);
+    KnownLayers near = known_near(&pixels, &fetched_near, row_light, cut);
     near = update_near(near, &pixels, colour, &frame, depth, depth_layout, &params, &nearest_near);
     const LaneMask is_inside = LANE_NUMBERS < count;
     store_near(updated_near, index, near.texels, pixels.is_split & is_inside);

@@ -145,34 +145,50 @@ static inline float alternation(float now, float before) {
   return now * before < 0.0f ? min(fabs(now), fabs(before)) : 0.0f;
 }
 
-// The evidence of the tile's four cells and of the twelve around them, row by row; none outside the picture.
-typedef struct CellGrid {
-  float16 brightening, brighter, count;
-} CellGrid;
+// A field of four cells.
+#define OF_CELLS(cells, field) (float4)((cells)[0].field, (cells)[1].field, (cells)[2].field, (cells)[3].field)
 
-static inline CellGrid cells_around(__global const TileEvidence* evidence, int tiles_x, int tiles_y, int x, int y) {
-  float brightening[16], brighter[16], count[16];
-  UNROLL_ALWAYS(16)
-  for (int i = 0; i < 16; ++i) {
-    const int column = x + (i % 4 + 1) / 2 - 1, row = y + (i / 4 + 1) / 2 - 1;  // of the cell's tile
-    CellEvidence cell = {0.0f, 0.0f, 0.0f};
-    if (column >= 0 && row >= 0 && column < tiles_x && row < tiles_y)
-      cell = evidence[row * tiles_x + column].cells[(i / 4 + 1) % 2 * 2 + (i + 1) % 2];
-    brightening[i] = cell.brightening;
-    brighter[i] = cell.brighter;
-    count[i] = cell.count;
-  }
-  const CellGrid grid = {vload16(0, brightening), vload16(0, brighter), vload16(0, count)};
-  return grid;
+// The evidence of the tile's four cells and of the twelve around them; none outside the picture.
+typedef struct CellsAround {
+  float4 brightening, brighter, count;  // sums over the 3x3 cells around each of the four
+  float16 means;                        // mean brightenings, row by row
+} CellsAround;
+
+// Returns the sums of three in a row around the two in the middle.
+static inline float2 three(float4 row) {
+  return row.s01 + row.s12 + row.s23;
 }
 
-// Returns the sums over 3x3 cells around each of the tile's four.
-static inline float4 sum_around(float16 cells) {
-  const float8 left = (float8)(cells.s0145, cells.s89cd);
-  const float8 middle = (float8)(cells.s1256, cells.s9ade);
-  const float8 right = (float8)(cells.s2367, cells.sabef);
-  const float8 rows = left + middle + right;  // two sums for each of four rows
-  return rows.s0123 + rows.s2345 + rows.s4567;
+// `explained`: of each sample's brightening, by the broad gain.
+static inline CellsAround cells_around(__global const TileEvidence* evidence, int tiles_x, int tiles_y, int x, int y,
+                                       float explained) {
+  float2 brightening[4], brighter[4], count[4];
+  float4 means[4];
+  UNROLL_ALWAYS(4)
+  for (int j = 0; j < 4; ++j) {
+    const int row = y + (j + 1) / 2 - 1;
+    CellEvidence cells[4];
+    UNROLL_ALWAYS(4)
+    for (int i = 0; i < 4; ++i) {
+      const int column = x + (i + 1) / 2 - 1;
+      const CellEvidence none = {0.0f, 0.0f, 0.0f};
+      cells[i] = none;
+      if (column >= 0 && row >= 0 && column < tiles_x && row < tiles_y)
+        cells[i] = evidence[row * tiles_x + column].cells[(j + 1) % 2 * 2 + (i + 1) % 2];
+    }
+    const float4 counts = OF_CELLS(cells, count);
+    const float4 own = OF_CELLS(cells, brightening) - explained * counts;
+    brightening[j] = three(own);
+    brighter[j] = three(OF_CELLS(cells, brighter));
+    count[j] = three(counts);
+    means[j] = own / max(counts, 1.0f);
+  }
+  const CellsAround around = {
+      (float4)(brightening[0] + brightening[1] + brightening[2], brightening[1] + brightening[2] + brightening[3]),
+      (float4)(brighter[0] + brighter[1] + brighter[2], brighter[1] + brighter[2] + brighter[3]),
+      (float4)(count[0] + count[1] + count[2], count[1] + count[2] + count[3]),
+      (float16)(means[0], means[1], means[2], means[3])};
+  return around;
 }
 
 // Returns the largest mean of three cells in a row whose middle is each of the tile's four, in four directions, with
@@ -211,22 +227,21 @@ static inline float4 judge(const float4* inputs) {
   return (float4)(output_of(a), output_of(b), output_of(c), output_of(d));
 }
 
-// A field of four cells.
-#define OF_CELLS(cells, field) (float4)((cells)[0].field, (cells)[1].field, (cells)[2].field, (cells)[3].field)
 
 // The same of the cells of a tile, by what they say `now` and said before, in a tile of such flicker, and by what the
 // tile itself and the 3x3 tiles around say. Whether a cell has become brighter or darker does not matter.
-static inline float4 judge_cells(const CellGrid* grid, const CellLight* now, const CellLight* before, float flicker,
-                                 const TileEvidence* tile, const TileEvidence* tiles) {
+static inline float4 judge_cells(const CellsAround* grid, const CellLight* now, const CellLight* before, float flicker,
+                                 __global const TileEvidence* tile,
+                                 const TileEvidence* tiles) {
   const float4 mean = OF_CELLS(now, mean_brightening), own_count = OF_CELLS(tile->cells, count);
   const float4 direction = select((float4)(1.0f), (float4)(-1.0f), mean < 0.0f);
   const float of_tiles = max(tiles->count, 1.0f), usual = tiles->neighbour_error / of_tiles + JUDGE_ERROR_FLOOR;
   const float per_usual = 1.0f / usual, per_sample = per_usual / max(tile->count, 1.0f);
-  const float4 per_sample_around = direction / max(sum_around(grid->count), 1.0f);
+  const float4 per_sample_around = direction / max(grid->count, 1.0f);
   const float4 inputs[JUDGE_INPUTS] = {
       fabs(mean) * per_usual,
-      sum_around(grid->brightening) * per_sample_around * per_usual,
-      mean_of_line(grid->brightening / max(grid->count, 1.0f), direction) * per_usual,
+      grid->brightening * per_sample_around * per_usual,
+      mean_of_line(grid->means, direction) * per_usual,
       direction * OF_CELLS(before, mean_brightening) * per_usual,
       direction * OF_CELLS(before, drift) * per_usual,
       OF_CELLS(now, flicker) * per_usual,
@@ -234,7 +249,7 @@ static inline float4 judge_cells(const CellGrid* grid, const CellLight* now, con
       (float4)(tile->history_error * per_sample),
       (float4)(tiles->history_error / of_tiles * per_usual),
       direction * OF_CELLS(tile->cells, brighter) / max(own_count, 1.0f),
-      sum_around(grid->brighter) * per_sample_around,
+      grid->brighter * per_sample_around,
       (float4)(usual),
       fabs(mean),
       (float4)(tile->neighbour_error * per_sample),
@@ -280,7 +295,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
                                  __global const TileEvidence* evidence, __global const TotalLight* total,
                                  __global const TileLight* previous, int x, int y) {
   const int i = y * tiles_x + x;
-  const TileEvidence own = evidence[i];
+  __global const TileEvidence* own = evidence + i;
   const TileLight before = remember(previous, tiles[i], tiles_x, tiles_y, x, y);
   const EvidenceAround around = sum_evidence(tiles, evidence, previous, tiles_x, tiles_y, x, y);
   const LightChange change = change_of(&around);
@@ -295,7 +310,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   const float4 lags = lags_around(total->lags, tiles_x, tiles_y, x, y);
   const float broad = follow_light(lags, lag_units(tiles_x, tiles_y), &tile.trend);
   tile.gain = is_local ? clamp(1.0f + change.relative, 1.0f / GAIN_MAX, GAIN_MAX) : broad;
-  const float explained = (broad - 1.0f) * own.light / max(own.count, 1.0f);
+  const float explained = (broad - 1.0f) * own->light / max(own->count, 1.0f);
   const bool is_widespread = (float)total->changed > WHOLE_CHANGED_TILES_MIN * (float)(tiles_x * tiles_y);
   const bool relit = is_widespread && is_relit(total);
 
@@ -303,7 +318,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   float flicker = 0.0f;
   UNROLL_LANE(4)
   for (int c = 0; c < 4; ++c) {
-    tile.cells[c] = cell_light(own.cells[c], explained, before.cells[c]);
+    tile.cells[c] = cell_light(own->cells[c], explained, before.cells[c]);
     flicker += 0.25f * tile.cells[c].flicker;
   }
   const float by_cut = is_widespread && !relit ? rejection_by_cut(total) : 0.0f;
@@ -314,9 +329,8 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   const int4 asked = changed > FLICKER_RATIO_MIN * OF_CELLS(tile.cells, flicker);
   float all_judged[4] = {0.0f, 0.0f, 0.0f, 0.0f};
   if (!is_local && any(asked)) {
-    CellGrid grid = cells_around(evidence, tiles_x, tiles_y, x, y);
-    grid.brightening -= explained * grid.count;
-    const float4 found = judge_cells(&grid, tile.cells, before.cells, flicker, &own, &around.sum);
+    const CellsAround grid = cells_around(evidence, tiles_x, tiles_y, x, y, explained);
+    const float4 found = judge_cells(&grid, tile.cells, before.cells, flicker, own, &around.sum);
     vstore4(select((float4)(0.0f), clamp(found, 0.0f, 1.0f), asked), 0, all_judged);
   }
   UNROLL_LANE(4)
@@ -356,6 +370,6 @@ __kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReproj
                              __global const TileLight* previous, __global TileLight* light) {
   const int y = get_global_id(1);
   if (y >= tiles_y) return;
-  for (int x = get_global_id(0); x < tiles_x; x += (int)get_global_size(0))
-    light[y * tiles_x + x] = light_of(tiles_x, tiles_y, tiles, evidence, total, previous, x, y);
+  for (int i = y * tiles_x + (int)get_global_id(0); i < (y + 1) * tiles_x; i += (int)get_global_size(0))
+    light[i] = light_of(tiles_x, tiles_y, tiles, evidence, total, previous, i % tiles_x, i / tiles_x);
 }

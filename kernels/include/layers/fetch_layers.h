@@ -197,7 +197,7 @@ static inline BlendedLayers take_taps(const LayerTaps* taps) {
 static inline BlendedLayers copy_layers(const PastLayers* past, DEPTH_TEXELS depth, const LayerWishes* wishes,
                                         const LayerSources* from, LayerRun run) {
   const RowWindows windows = windows_from(past, run.x + 1, run.y + 1, 1, false);
-  const LayerRow row = load_layer_row(past, depth, windows, 0);
+  const LayerRow row = load_layer_row(past, depth, windows, 0, 0);
   const LayerTaps taps = taps_of(&row, 0, wishes, from->was_split);
   return take_taps(&taps);
 }
@@ -215,16 +215,16 @@ static inline BlendedLayers sample_layers(const PastLayers* past, DEPTH_TEXELS d
   const bool copied = !any_lane(run.lanes & ((from->fraction_x > zero) | (from->fraction_y > zero)));
   if (copied) return copy_layers(past, depth, wishes, from, run);
   const RowWindows windows = windows_from(past, run.x, run.y, 4, true);
-  const Cubic across = cubic_weights(from->fraction_x, HISTORY_SHARPNESS);
+  Cubic wx = cubic_weights(from->fraction_x, HISTORY_SHARPNESS);  // after four turns the first is the first again
   Cubic wy = cubic_weights(from->fraction_y, HISTORY_SHARPNESS);
   LayerSums sums = no_taps();
   UNROLL(4)
   for (int y = 0; y < 4; ++y) {
-    const LayerRow row = load_layer_row(past, depth, windows, y);
+    LayerRow row;
     const LaneFloat linear_y = middle_weight(y, from->fraction_y);
-    Cubic wx = across;
     UNROLL(4)
     for (int x = 0; x < 4; ++x) {
+      if (LANES == 1 || x == 0) row = load_layer_row(past, depth, windows, y, x);
       const LayerTaps taps = taps_of(&row, x, wishes, from->was_split);
       add_taps(&sums, &taps, wx.w0 * wy.w0);
       if (is_middle_tap(x) && is_middle_tap(y))

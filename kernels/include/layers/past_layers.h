@@ -230,7 +230,7 @@ static inline RowWindows windows_from(const PastLayers* past, int x, int y, int 
 #if LANES == 8
 typedef float16 RowFloats;  // twelve texels; the last four lanes are not used, or eight where there is no third window
 #else
-typedef float4 RowFloats;
+typedef float RowFloats;  // one texel: a row of four takes more registers than a GPU has
 #endif
 
 // Texels by channel.
@@ -245,13 +245,10 @@ typedef struct LayerRow {
   RowFloats far_depth, near_depth, near_confidence, near_alpha;
 } LayerRow;
 
+#if LANES == 8
 // Returns a row without its first four texels, and with four more after the others, which fill the rest.
 static inline RowFloats push_four(RowFloats row, float4 texels) {
-#if LANES == 8
   return (float16)(row.s4567, row.s89ab, texels, texels);
-#else
-  return texels;
-#endif
 }
 
 static inline LayerChannels push_channels(LayerChannels row, float16 texels) {
@@ -260,14 +257,16 @@ static inline LayerChannels push_channels(LayerChannels row, float16 texels) {
   return pushed;
 }
 
-static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth, RowWindows windows, int row) {
+// Loads a row.
+static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth, RowWindows windows, int row,
+                                      int column) {
   const RowFloats none = (RowFloats)(0.0f);
   LayerRow loaded = {{none, none, none, none}, {none, none, none, none}, none, none, none, none, none};
   float16 far = (float16)(0.0f), near = far;
   FourStates states = {none.s0123, none.s0123, none.s0123, none.s0123};
   float4 alpha = none.s0123;
   UNROLL(3)
-  for (int i = 0; i < (LANES == 8 ? 3 : 1); ++i) {
+  for (int i = 0; i < 3; ++i) {
     if (i < 2 || windows.has_third) {
       const TexelWindow window = i == 0 ? windows.first : i == 1 ? windows.second : windows.third;
       far = load_row(past->far, window, row);
@@ -285,6 +284,27 @@ static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth
   }
   return loaded;
 }
+#else
+// Loads the texel in `column` of a row.
+static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth, RowWindows windows, int row,
+                                      int column) {
+  const int x = clamp(windows.first.x + column, 0, past->far.width - 1);
+  const int y = clamp(windows.first.y + row, 0, past->far.height - 1);
+  const int index = y * past->far.width + x;
+  const float4 far = load_history(past->far, index);
+  const float4 near = as_int(far.w) < 0 ? load_history(past->near, index) : (float4)(0.0f);
+  const LayerState state =
+      windows.first.has_states ? load_state(past->states, index) : state_at(past, depth, x, y);
+#if ALPHA
+  const float alpha = load_alpha(past->alpha, index);
+#else
+  const float alpha = 1.0f;
+#endif
+  const LayerRow loaded = {{far.x, far.y, far.z, far.w}, {near.x, near.y, near.z, near.w}, alpha,
+                           state.far_depth, state.near_depth, state.near_confidence, state.near_alpha};
+  return loaded;
+}
+#endif
 
 // Returns what the pixels that are sampled see in the same column of their neighbourhoods, 0 to 3.
 static inline LaneFloat in_column(RowFloats row, int column) {
@@ -293,7 +313,6 @@ static inline LaneFloat in_column(RowFloats row, int column) {
   if (column == 1) return row.s12345678;
   return column == 2 ? row.s23456789 : row.s3456789a;
 #else
-  const float2 pair = column < 2 ? row.s01 : row.s23;
-  return column & 1 ? pair.y : pair.x;
+  return row;
 #endif
 }

@@ -187,30 +187,27 @@ typedef struct FetchedLayers {
   LayerSources from;
 } FetchedLayers;
 
-typedef struct BothLayers {
-  FetchedLayers far, near;  // far or only ones; the near ones only where a pixel has two
-} BothLayers;
+// Fetches the far layers, or the only ones, of the pixels from (x, y) on.
+static inline FetchedLayers fetch_far(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
+                                      TileReprojection tile, const Reprojections* motion, int x, int y) {
+  const LayerWishes wishes = far_wishes_of(pixels);
+  const LayerPlaces place = places_from(x, y, tile.phase_x, tile.phase_y, motion->x, motion->y);
+  FetchedLayers far;
+  far.from = find_sources(past, depth1, &wishes, place, tile.is_rigid);
+  far.known = fetch_layers(past, depth1, &wishes, &far.from, mask_of(true));
+  return far;
+}
 
-// Fetches the layers of the pixels from (x, y) on. Unrolled: a real loop would carry all lanes
-// as live values from one round to the next.
-static inline BothLayers fetch_both(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
-                                    TileReprojection tile, LayerTile layer, const Reprojections* motion, int x,
-                                    int y) {
-  BothLayers both;
-  UNROLL_ALWAYS(2)
-  for (int kind = kFarLayer; kind <= kNearLayer; ++kind) {
-    const bool is_far = kind == kFarLayer;
-    if (!is_far && !any_lane(pixels->is_split)) break;
-    const LayerWishes wishes =
-        is_far ? far_wishes_of(pixels) : near_wishes_of(pixels, layer.motion_range > CROSSING_MOTION_MIN);
-    const LayerPlaces place =
-        is_far ? places_from(x, y, tile.phase_x, tile.phase_y, motion->x, motion->y)
-               : places_from(x, y, layer.phase_x, layer.phase_y, pixels->motion_x, pixels->motion_y);
-    both.near.from = find_sources(past, depth1, &wishes, place, is_far ? tile.is_rigid : layer.is_rigid);
-    both.near.known = fetch_layers(past, depth1, &wishes, &both.near.from, is_far ? mask_of(true) : pixels->is_split);
-    if (is_far) both.far = both.near;
-  }
-  return both;
+// Fetches the near ones where a pixel has two.
+static inline FetchedLayers fetch_near(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
+                                       LayerTile layer, int x, int y) {
+  const LayerWishes wishes = near_wishes_of(pixels, layer.motion_range > CROSSING_MOTION_MIN);
+  const LayerPlaces place =
+      places_from(x, y, layer.phase_x, layer.phase_y, pixels->motion_x, pixels->motion_y);
+  FetchedLayers near;
+  near.from = find_sources(past, depth1, &wishes, place, layer.is_rigid);
+  near.known = fetch_layers(past, depth1, &wishes, &near.from, pixels->is_split);
+  return near;
 }
 
 // ---- Far layers.

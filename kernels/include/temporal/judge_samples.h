@@ -327,7 +327,12 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, c
     evidence->lit += found.lit;
     const int row = (int)place_y % kTemporalTile / kTemporalCell;
     const int column = (int)place_x % kTemporalTile / kTemporalCell;
-    add_to_cell(&evidence->cells[2 * row + column], found.brightening, found.brighter, found.count);
+    UNROLL_ALWAYS(4)  // an index would put the cells on a stack
+    for (int cell = 0; cell < 4; ++cell) {
+      const bool is_own = cell == 2 * row + column;
+      add_to_cell(&evidence->cells[cell], where(is_own, found.brightening), where(is_own, found.brighter),
+                  where(is_own, found.count));
+    }
   }
 }
 #endif
