@@ -72,21 +72,21 @@ __kernel void resolve_checkerboard(const CheckerboardParams params, COLOUR_TEXEL
                                    DEPTH_TEXELS previous_depth, STORED_COLOUR colour, STORED_VELOCITY velocity,
                                    STORED_DEPTH depth, STORED_REACTIVE reactive) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.width || y >= params.height) return;
+  const ItemColumns pairs = columns_of_item(params.columns_per_item / 2, (params.width + 1) / 2, kLanes);
+  if (pairs.first >= pairs.end || y >= params.height) return;
 
-  const int end = min(first + params.columns_per_item, params.width);
   const bool shaded_first = (y & 1) == params.parity;  // the first column is shaded; runs begin at an even one
-  for (int run = first; run < end; run += kCheckerboardBlock) {
-    const int count = min(end - run, (int)kCheckerboardBlock);
+  for (int pair = pairs.first; pair < pairs.end; pair += pairs.step) {
+    const int run = 2 * pair;
+    const int count = min(min(2 * pairs.end, params.width) - run, (int)kRun);
     const int x = run + shaded_first;  // the first pixel that is not shaded
 
     // Which surfaces lie around, and where they were.
     const DepthsAround depths = depths_around(&params, shaded_depth, x, y);
     const DepthsAround settled = settled_depths(&params, depths, x, y);
     const Surfaces surfaces = surfaces_of(settled);
-    const float8 range = surfaces.nearest_depth - surfaces.farthest_depth;
-    float8 whole = (float8)(1.0f);
+    const LaneFloat range = surfaces.nearest_depth - surfaces.farthest_depth;
+    LaneFloat whole = (LaneFloat)(1.0f);
 #if REACTIVE
     const ReactiveAround marks = reactive_around(&params, shaded_reactive, x, y);
     whole = trust_in(marks);
@@ -100,18 +100,18 @@ __kernel void resolve_checkerboard(const CheckerboardParams params, COLOUR_TEXEL
                         range, whole);
     }
     Sides shown = surfaces.nearest;
-    if (any_of_eight(nearest.trust < 1.0f)) {
+    if (any_lane(nearest.trust < 1.0f)) {
       if (params.has_history) {
         farthest = past_of(&params, previous_depth, x, y, surfaces.farthest_depth, MOTION_OF(farthest),
                            surfaces.is_surface, range, whole);
       }
-      const int8 shows_farthest = (1.0f - nearest.trust) * farthest.trust >= 0.5f;
+      const LaneMask shows_farthest = (1.0f - nearest.trust) * farthest.trust >= 0.5f;
       const Sides hidden = select(likely_sides(settled, surfaces.nearest), surfaces.farthest, shows_farthest);
       shown = select(hidden, surfaces.nearest, nearest.trust >= 0.5f);
     }
 
     // All that the pixels get but colour is a neighbour's.
-    const float8 filled_depth = depth_on(shown, depths);
+    const LaneFloat filled_depth = depth_on(shown, depths);
     store_depths_in_turn(depth, params.filled.depth, run, y, count, shaded_first ? depths.left : filled_depth,
                          shaded_first ? filled_depth : depths.right);
 #if VELOCITY
@@ -121,7 +121,7 @@ __kernel void resolve_checkerboard(const CheckerboardParams params, COLOUR_TEXEL
                              shaded_first ? filled_velocity : velocities.right);
 #endif
 #if REACTIVE
-    const uint8 filled_reactive = reactive_on(shown, marks);
+    const LaneUint filled_reactive = reactive_on(shown, marks);
     store_reactive_in_turn(reactive, params.filled.reactive, run, y, count,
                            shaded_first ? marks.left : filled_reactive, shaded_first ? filled_reactive : marks.right);
 #endif
@@ -131,7 +131,7 @@ __kernel void resolve_checkerboard(const CheckerboardParams params, COLOUR_TEXEL
     const ColourBits right = load_every_other_colour(shaded_colour, layout, x + 1, y, params.width);
     const ColourBits above = load_every_other_colour(shaded_colour, layout, x, row_above(y), params.width);
     const ColourBits below = load_every_other_colour(shaded_colour, layout, x, row_below(&params, y), params.width);
-    const EightAround around = colours_around(&params, left, right, above, below, x, y);
+    const LanesAround around = colours_around(&params, left, right, above, below, x, y);
     const ColourBits filled = bits_of(fill_colours(&params, previous_colour, around, nearest, farthest));
     if (shaded_first)
       store_colours_in_turn(colour, params.filled.colour, run, y, count, left, filled);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// For resolve_checkerboard: loads of eight texels of a row that lie two apart, from column x on, clamped to the edge,
-// and stores of sixteen.
+// For resolve_checkerboard: loads of texels of a row that lie two apart, one a lane, from column x on, clamped to the
+// edge; and stores of twice as many.
 #pragma once
 
 #include "bits.h"
 #include "resolve_params.h"
 #include "stored_frame.h"
+
+enum { kRun = 2 * kLanes };  // pixels of a row that are made at once: every other one is not shaded
 
 // Inlines a function even where it is called twice: a call would put runs of eight into memory. Oclgrind does not know
 // what clang leaves where it has inlined such a function, and is given an empty macro.
@@ -14,70 +16,82 @@
 #endif
 
 // Texels of a target as their bits, for those that are copied and not computed with.
-#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF
-typedef ulong8 ColourBits;
-#define COLOUR_WORDS __global const ulong*
-#elif SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == SRGB8
-typedef uint8 ColourBits;
-#define COLOUR_WORDS __global const uint*
+#if LANES == 8
+typedef ulong8 LaneUlong;
 #else
-typedef struct ColourBits {
-  float16 first, last;
-} ColourBits;
+typedef ulong LaneUlong;
+#endif
+#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF
+typedef LaneUlong ColourBits;
+#define COLOUR_WORD ulong
+#elif SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == SRGB8
+typedef LaneUint ColourBits;
+#define COLOUR_WORD uint
+#else
+typedef LaneTexels ColourBits;
 #endif
 #if SOURCE_STORAGE == BUFFER && VELOCITY_FORMAT == HALF
-typedef uint8 VelocityBits;
+typedef LaneUint VelocityBits;
+#define VELOCITY_WORD uint
 #else
-typedef ulong8 VelocityBits;
+typedef LaneUlong VelocityBits;
+#define VELOCITY_WORD ulong
 #endif
 
-// The colours of eight pixels, four and four. Linear light; of RGBA8 the codes themselves, 0 to 255.
-typedef struct EightColours {
-  float16 first, last;
-} EightColours;
+static inline LaneInt every_other(int x) {
+  return x + 2 * LANE_NUMBERS;
+}
 
-static inline int8 every_other(int x) {
-  return x + (int8)(0, 2, 4, 6, 8, 10, 12, 14);
+// The same, clamped to the edge.
+static inline LaneInt columns_from(int x, int width) {
+  return clamp(every_other(x), (LaneInt)(0), (LaneInt)(width - 1));
 }
 
 static inline bool run_is_inside(int x, int width) {
-  return x >= 0 && x + kCheckerboardBlock <= width;
+  return x >= 0 && x + kRun <= width;
 }
 
-static inline float8 load_every_other_depth(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width) {
-#if SOURCE_STORAGE == BUFFER
-  if (LANES == 8 && run_is_inside(x, width)) return vload16(0, texels + texel_index(layout, x, y)).even;
+// The word of a row in each lane's column.
+#if LANES == 8
+#define WORDS_AT(row, i) (row[i.s0], row[i.s1], row[i.s2], row[i.s3], row[i.s4], row[i.s5], row[i.s6], row[i.s7])
+#else
+#define WORDS_AT(row, i) (row[i])
 #endif
-  const int8 column = clamp(every_other(x), (int8)(0), (int8)(width - 1));
-  return (float8)(load_depth4(texels, layout, column.lo, y), load_depth4(texels, layout, column.hi, y));
+
+static inline LaneFloat load_every_other_depth(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width) {
+#if SOURCE_STORAGE == BUFFER && LANES == 8
+  if (run_is_inside(x, width)) return vload16(0, texels + texel_index(layout, x, y)).even;
+#endif
+  return load_depth_lanes(texels, layout, columns_from(x, width), y);
 }
 
 static inline VelocityBits load_every_other_velocity(VELOCITY_TEXELS texels, TexelLayout layout, int x, int y,
                                                      int width) {
-  const int8 i = clamp(every_other(x), (int8)(0), (int8)(width - 1));
-#if SOURCE_STORAGE == IMAGE
+  const LaneInt i = columns_from(x, width);
+#if SOURCE_STORAGE == BUFFER
+  __global const VELOCITY_WORD* row = (__global const VELOCITY_WORD*)texels + row_index(layout, y);
+#if LANES == 8
+  if (run_is_inside(x, width)) return vload16(0, row + x).even;
+#endif
+  return (VelocityBits)WORDS_AT(row, i);
+#elif LANES == 8
   return as_ulong8((float16)(load_velocity4(texels, layout, i.lo, y), load_velocity4(texels, layout, i.hi, y)));
-#elif VELOCITY_FORMAT == HALF
-  __global const uint* row = (__global const uint*)texels + row_index(layout, y);
-  if (LANES == 8 && run_is_inside(x, width)) return vload16(0, row + x).even;
-  return (uint8)(row[i.s0], row[i.s1], row[i.s2], row[i.s3], row[i.s4], row[i.s5], row[i.s6], row[i.s7]);
 #else
-  __global const ulong* row = (__global const ulong*)texels + row_index(layout, y);
-  if (LANES == 8 && run_is_inside(x, width)) return vload16(0, row + x).even;
-  return (ulong8)(row[i.s0], row[i.s1], row[i.s2], row[i.s3], row[i.s4], row[i.s5], row[i.s6], row[i.s7]);
+  return as_ulong(load_velocity(texels, layout, i, y));
 #endif
 }
 
 // As codes.
-static inline uint8 load_every_other_reactive(REACTIVE_TEXELS texels, TexelLayout layout, int x, int y, int width) {
-  const int8 i = clamp(every_other(x), (int8)(0), (int8)(width - 1));
+static inline LaneUint load_every_other_reactive(REACTIVE_TEXELS texels, TexelLayout layout, int x, int y, int width) {
+  const LaneInt i = columns_from(x, width);
 #if SOURCE_STORAGE == IMAGE
-  const float8 values = (float8)(load_reactive4(texels, layout, i.lo, y), load_reactive4(texels, layout, i.hi, y));
-  return convert_uint8(values * 255.0f + 0.5f);
+  return as_lane_uint(to_lane_int(load_reactive_lanes(texels, layout, i, y) * 255.0f + 0.5f));
 #else
   __global const uchar* row = texels + row_index(layout, y);
-  if (LANES == 8 && run_is_inside(x, width)) return convert_uint8(vload16(0, row + x).even);
-  return (uint8)(row[i.s0], row[i.s1], row[i.s2], row[i.s3], row[i.s4], row[i.s5], row[i.s6], row[i.s7]);
+#if LANES == 8
+  if (run_is_inside(x, width)) return convert_uint8(vload16(0, row + x).even);
+#endif
+  return (LaneUint)WORDS_AT(row, i);
 #endif
 }
 
@@ -88,33 +102,68 @@ static inline uint8 load_every_other_reactive(REACTIVE_TEXELS texels, TexelLayou
 #endif
 
 static inline ColourBits load_every_other_colour(COLOUR_TEXELS texels, TexelLayout layout, int x, int y, int width) {
-  const int8 i = clamp(every_other(x), (int8)(0), (int8)(width - 1));
-#if SOURCE_STORAGE == IMAGE || SOURCE_FORMAT == FLOAT
+  const LaneInt i = columns_from(x, width);
+#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT != FLOAT
+  __global const COLOUR_WORD* row = (__global const COLOUR_WORD*)texels + row_index(layout, y);
+#if LANES == 8
+  if (run_is_inside(x, width)) return vload16(0, row + x).even;
+#endif
+  return (ColourBits)WORDS_AT(row, i);
+#elif LANES == 8
   const ColourBits bits = {
       (float16)(STORED_TEXEL(i.s0), STORED_TEXEL(i.s1), STORED_TEXEL(i.s2), STORED_TEXEL(i.s3)),
       (float16)(STORED_TEXEL(i.s4), STORED_TEXEL(i.s5), STORED_TEXEL(i.s6), STORED_TEXEL(i.s7))};
   return bits;
 #else
-  COLOUR_WORDS row = (COLOUR_WORDS)texels + row_index(layout, y);
-  if (LANES == 8 && run_is_inside(x, width)) return vload16(0, row + x).even;
-  return (ColourBits)(row[i.s0], row[i.s1], row[i.s2], row[i.s3], row[i.s4], row[i.s5], row[i.s6], row[i.s7]);
+  return STORED_TEXEL(i);
 #endif
 }
 
-static inline EightColours colours_of(ColourBits bits) {
+// Of four texels, or of one where there is one lane.
+#if LANES == 8
+typedef float16 SomeTexels;
+typedef int16 SomeChannels;
+typedef float4 SomeFloats;  // one of each texel
+typedef int4 SomeMask;
+#define LEFT(lanes) ((lanes).lo)
+#define RIGHT(lanes) ((lanes).hi)
+#define LEFT_TEXELS(texels) ((texels).left)
+#define RIGHT_TEXELS(texels) ((texels).right)
+#define BOTH(left, right) {left, right}
+#define IN_CHANNELS(values) OF_FOUR(values)  // each in all channels of its texel
+#define MASK_IN_CHANNELS(mask) OF_FOUR(mask)
+#else
+typedef float4 SomeTexels;
+typedef int4 SomeChannels;
+typedef float SomeFloats;
+typedef bool SomeMask;
+#define LEFT(lane) (lane)
+#define LEFT_TEXELS(texel) (texel)
+#define BOTH(left, right) (left)
+#define IN_CHANNELS(value) ((float4)(value))
+#define MASK_IN_CHANNELS(mask) ((int4)((mask) ? -1 : 0))
+#endif
+
+// Linear light; of RGBA8 the codes themselves, 0 to 255.
+static inline LaneTexels colours_of(ColourBits bits) {
 #if SOURCE_STORAGE == IMAGE && SOURCE_FORMAT == SRGB8
-  const EightColours colours = {rint(bits.first * 255.0f), rint(bits.last * 255.0f)};
+  const LaneTexels colours = BOTH(rint(LEFT_TEXELS(bits) * 255.0f), rint(RIGHT_TEXELS(bits) * 255.0f));
 #elif SOURCE_STORAGE == IMAGE || SOURCE_FORMAT == FLOAT
-  const EightColours colours = {bits.first, bits.last};
-#elif SOURCE_FORMAT == HALF
+  const LaneTexels colours = bits;
+#elif SOURCE_FORMAT == HALF && LANES == 8
   // Mesa 22.3 crashes on a vector of longs that is taken for halves.
   const uint16 words = as_uint16(bits);
   const uint4 w0 = words.s0123, w1 = words.s4567, w2 = words.s89ab, w3 = words.scdef;
-  const EightColours colours = {
+  const LaneTexels colours = {
       (float16)(vload_half8(0, (__private const half*)&w0), vload_half8(0, (__private const half*)&w1)),
       (float16)(vload_half8(0, (__private const half*)&w2), vload_half8(0, (__private const half*)&w3))};
+#elif SOURCE_FORMAT == HALF
+  const uint2 words = as_uint2(bits);
+  const LaneTexels colours = vload_half4(0, (__private const half*)&words);
+#elif LANES == 8
+  const LaneTexels colours = {convert_float16(as_uchar16(bits.lo)), convert_float16(as_uchar16(bits.hi))};
 #else
-  const EightColours colours = {convert_float16(as_uchar16(bits.lo)), convert_float16(as_uchar16(bits.hi))};
+  const LaneTexels colours = convert_float4(as_uchar4(bits));
 #endif
   return colours;
 }
@@ -130,7 +179,7 @@ static inline float4 load_stored(COLOUR_TEXELS texels, TexelLayout layout, int x
 #endif
 }
 
-#if SOURCE_STORAGE == BUFFER
+#if SOURCE_STORAGE == BUFFER && LANES == 8
 // Sixteen texels of a row, the first of each two and the second.
 typedef struct ColourRun {
   ColourBits even, odd;
@@ -144,35 +193,44 @@ static inline ColourRun load_colour_run(COLOUR_TEXELS texels, TexelLayout layout
   const ColourRun run = {{(float16)(a.s012389ab, b.s012389ab), (float16)(c.s012389ab, d.s012389ab)},
                          {(float16)(a.s4567cdef, b.s4567cdef), (float16)(c.s4567cdef, d.s4567cdef)}};
 #elif SOURCE_FORMAT == HALF
-  const ulong16 all = vload16(0, (COLOUR_WORDS)texels + index);
+  const ulong16 all = vload16(0, (__global const COLOUR_WORD*)texels + index);
   const ColourRun run = {all.even, all.odd};
 #else
-  const uint16 all = vload16(0, (COLOUR_WORDS)texels + index);
+  const uint16 all = vload16(0, (__global const COLOUR_WORD*)texels + index);
   const ColourRun run = {all.even, all.odd};
 #endif
   return run;
 }
 #endif
 
-// ---- Stores of sixteen neighbours of a row, from (x, y) on, that come from two runs of eight in turn. `count` of them
+// ---- Stores of kRun neighbours of a row, from (x, y) on, that come from two runs of lanes in turn. `count` of them
 // lie inside the viewport.
 
+#if LANES == 8
 // The first texel of each run, the second of each and so on.
 #define IN_TURN(a, b) \
   (a.s0, b.s0, a.s1, b.s1, a.s2, b.s2, a.s3, b.s3, a.s4, b.s4, a.s5, b.s5, a.s6, b.s6, a.s7, b.s7)
+#define TYPE_IN_TURN(type) type##16
 
 // All sixteen at once, or the first `count` one by one.
 #define STORE_ROW(type, row, texels)                                                 \
-  if (count == kCheckerboardBlock) {                                                 \
+  if (count == kRun) {                                                               \
     vstore16(texels, 0, (__global type*)(row));                                      \
   } else {                                                                           \
     __private const type* one = (__private const type*)&texels;                      \
     for (int i = 0; i < count; ++i) ((__global type*)(row))[i] = one[i];             \
   }
+#else
+#define IN_TURN(a, b) (a, b)
+#define TYPE_IN_TURN(type) type##2
+#define STORE_ROW(type, row, texels)                                                 \
+  ((__global type*)(row))[0] = (texels).s0;                                          \
+  if (count > 1) ((__global type*)(row))[1] = (texels).s1;
+#endif
 
-static inline void store_depths_in_turn(STORED_DEPTH texels, TexelLayout layout, int x, int y, int count, float8 even,
-                                        float8 odd) {
-  const float16 depth = (float16)IN_TURN(even, odd);
+static inline void store_depths_in_turn(STORED_DEPTH texels, TexelLayout layout, int x, int y, int count,
+                                        LaneFloat even, LaneFloat odd) {
+  const TYPE_IN_TURN(float) depth = (TYPE_IN_TURN(float))IN_TURN(even, odd);
 #if SOURCE_STORAGE == IMAGE
   __private const float* one = (__private const float*)&depth;
   for (int i = 0; i < count; ++i) write_imagef(texels, (int2)(x + i, y), (float4)(one[i], 0.0f, 0.0f, 1.0f));
@@ -184,23 +242,27 @@ static inline void store_depths_in_turn(STORED_DEPTH texels, TexelLayout layout,
 static inline void store_velocities_in_turn(STORED_VELOCITY texels, TexelLayout layout, int x, int y, int count,
                                             VelocityBits even, VelocityBits odd) {
 #if SOURCE_STORAGE == BUFFER && VELOCITY_FORMAT == HALF
-  const uint16 bits = (uint16)IN_TURN(even, odd);
-  STORE_ROW(uint, (__global uint*)texels + texel_index(layout, x, y), bits)
+  const TYPE_IN_TURN(uint) bits = (TYPE_IN_TURN(uint))IN_TURN(even, odd);
 #else
-  const ulong16 bits = (ulong16)IN_TURN(even, odd);
+  const TYPE_IN_TURN(ulong) bits = (TYPE_IN_TURN(ulong))IN_TURN(even, odd);
+#endif
 #if SOURCE_STORAGE == BUFFER
-  STORE_ROW(ulong, (__global ulong*)texels + texel_index(layout, x, y), bits)
+  STORE_ROW(VELOCITY_WORD, (__global VELOCITY_WORD*)texels + texel_index(layout, x, y), bits)
 #else
   __private const ulong* one = (__private const ulong*)&bits;
   for (int i = 0; i < count; ++i) write_imagef(texels, (int2)(x + i, y), (float4)(as_float2(one[i]), 0.0f, 1.0f));
-#endif
 #endif
 }
 
 // Codes.
 static inline void store_reactive_in_turn(STORED_REACTIVE texels, TexelLayout layout, int x, int y, int count,
-                                          uint8 even, uint8 odd) {
-  const uchar16 codes = convert_uchar16((uint16)IN_TURN(even, odd));
+                                          LaneUint even, LaneUint odd) {
+  const TYPE_IN_TURN(uint) wide = (TYPE_IN_TURN(uint))IN_TURN(even, odd);
+#if LANES == 8
+  const uchar16 codes = convert_uchar16(wide);
+#else
+  const uchar2 codes = convert_uchar2(wide);
+#endif
 #if SOURCE_STORAGE == IMAGE
   __private const uchar* one = (__private const uchar*)&codes;
   for (int i = 0; i < count; ++i)
@@ -212,47 +274,56 @@ static inline void store_reactive_in_turn(STORED_REACTIVE texels, TexelLayout la
 
 // Returns the bits that a target holds of colours between those of finite texels. An image, whose format is unknown
 // here, saturates as halves do, and an encoded one gets whole codes.
-static inline ColourBits bits_of(EightColours colours) {
+static inline ColourBits bits_of(LaneTexels colours) {
 #if SOURCE_STORAGE == IMAGE && SOURCE_FORMAT == SRGB8
-  const ColourBits bits = {rint(colours.first) * (1.0f / 255.0f), rint(colours.last) * (1.0f / 255.0f)};
+  const ColourBits bits =
+      BOTH(rint(LEFT_TEXELS(colours)) * (1.0f / 255.0f), rint(RIGHT_TEXELS(colours)) * (1.0f / 255.0f));
 #elif SOURCE_STORAGE == IMAGE
-  const ColourBits bits = {clamp(colours.first, -FINITE_HALF_MAX, FINITE_HALF_MAX),
-                           clamp(colours.last, -FINITE_HALF_MAX, FINITE_HALF_MAX)};
+  const ColourBits bits = BOTH(clamp(LEFT_TEXELS(colours), -FINITE_HALF_MAX, FINITE_HALF_MAX),
+                               clamp(RIGHT_TEXELS(colours), -FINITE_HALF_MAX, FINITE_HALF_MAX));
 #elif SOURCE_FORMAT == FLOAT
-  const ColourBits bits = {colours.first, colours.last};
+  const ColourBits bits = colours;
+#elif SOURCE_FORMAT == SRGB8 && LANES == 8
+  const ColourBits bits = (ColourBits)(as_uint4(convert_uchar16(rint(colours.left))),
+                                       as_uint4(convert_uchar16(rint(colours.right))));
 #elif SOURCE_FORMAT == SRGB8
-  const ColourBits bits = (ColourBits)(as_uint4(convert_uchar16(rint(colours.first))),
-                                       as_uint4(convert_uchar16(rint(colours.last))));
+  const ColourBits bits = as_uint(convert_uchar4(rint(colours)));
 #else
   ColourBits bits;
   __private half* halves = (__private half*)&bits;
-  vstore_half8_rte(colours.first.lo, 0, halves);
-  vstore_half8_rte(colours.first.hi, 1, halves);
-  vstore_half8_rte(colours.last.lo, 2, halves);
-  vstore_half8_rte(colours.last.hi, 3, halves);
+#if LANES == 8
+  vstore_half8_rte(colours.left.lo, 0, halves);
+  vstore_half8_rte(colours.left.hi, 1, halves);
+  vstore_half8_rte(colours.right.lo, 2, halves);
+  vstore_half8_rte(colours.right.hi, 3, halves);
+#else
+  vstore_half4_rte(colours, 0, halves);
+#endif
 #endif
   return bits;
 }
 
 static inline void store_colours_in_turn(STORED_COLOUR texels, TexelLayout layout, int x, int y, int count,
                                          ColourBits even, ColourBits odd) {
-#if SOURCE_STORAGE == IMAGE || SOURCE_FORMAT == FLOAT
-  const float4 all[kCheckerboardBlock] = {
-      even.first.s0123, odd.first.s0123, even.first.s4567, odd.first.s4567, even.first.s89ab, odd.first.s89ab,
-      even.first.scdef, odd.first.scdef, even.last.s0123,  odd.last.s0123,  even.last.s4567,  odd.last.s4567,
-      even.last.s89ab,  odd.last.s89ab,  even.last.scdef,  odd.last.scdef};
-  for (int i = 0; i < count; ++i) {
-#if SOURCE_STORAGE == IMAGE
-    write_imagef(texels, (int2)(x + i, y), all[i]);
+#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT != FLOAT
+#if SOURCE_FORMAT == HALF
+  const TYPE_IN_TURN(ulong) bits = (TYPE_IN_TURN(ulong))IN_TURN(even, odd);
 #else
-    vstore4(all[i], texel_index(layout, x + i, y), texels);
+  const TYPE_IN_TURN(uint) bits = (TYPE_IN_TURN(uint))IN_TURN(even, odd);
 #endif
-  }
-#elif SOURCE_FORMAT == HALF
-  const ulong16 bits = (ulong16)IN_TURN(even, odd);
-  STORE_ROW(ulong, (__global ulong*)texels + texel_index(layout, x, y), bits)
+  STORE_ROW(COLOUR_WORD, (__global COLOUR_WORD*)texels + texel_index(layout, x, y), bits)
 #else
-  const uint16 bits = (uint16)IN_TURN(even, odd);
-  STORE_ROW(uint, (__global uint*)texels + texel_index(layout, x, y), bits)
+  for (int i = 0; i < count; i += 2) {
+    const float4 first = first_texel(even), second = first_texel(odd);
+#if SOURCE_STORAGE == IMAGE
+    write_imagef(texels, (int2)(x + i, y), first);
+    if (i + 1 < count) write_imagef(texels, (int2)(x + i + 1, y), second);
+#else
+    vstore4(first, texel_index(layout, x + i, y), texels);
+    if (i + 1 < count) vstore4(second, texel_index(layout, x + i + 1, y), texels);
+#endif
+    even = push_texel(even, first);
+    odd = push_texel(odd, second);
+  }
 #endif
 }

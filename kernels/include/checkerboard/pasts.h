@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// For resolve_checkerboard: which surfaces eight pixels that are not shaded may show, where those were in the previous
-// frame, and how far that is to be trusted. The pixels lie two apart in one row; their neighbours are shaded.
+// For resolve_checkerboard: which surfaces pixels that are not shaded may show, where those were in the previous frame,
+// and how far that is to be trusted. The pixels lie two apart in one row; their neighbours are shaded.
 #pragma once
 
 #include "bits.h"
@@ -14,21 +14,21 @@
 #define NO_SURFACE -0x1p127f
 #define OUTSIDE -INFINITY
 
-// Whether all neighbours of the eight pixels from (x, y) on lie inside the viewport, with all between them.
+// Whether all neighbours of the pixels from (x, y) on lie inside the viewport, with all between them.
 static inline bool all_inside(const CheckerboardParams* params, int x, int y) {
   return run_is_inside(x - 1, params->width) && run_is_inside(x + 1, params->width) && y > 0 && y + 1 < params->height;
 }
 
-// Which do: each lane 0 or -1.
+// Which do.
 typedef struct InsideAround {
-  int8 left, right, above, below;
+  LaneMask left, right, above, below;
 } InsideAround;
 
 static inline InsideAround inside_around(const CheckerboardParams* params, int x, int y) {
-  const int8 column = every_other(x);
-  const int8 is_column = column < params->width;
+  const LaneInt column = every_other(x);
+  const LaneMask is_column = column < params->width;
   const InsideAround inside = {(column > 0) & (column <= params->width), column + 1 < params->width,
-                               y > 0 ? is_column : (int8)(0), y + 1 < params->height ? is_column : (int8)(0)};
+                               is_column & mask_of(y > 0), is_column & mask_of(y + 1 < params->height)};
   return inside;
 }
 
@@ -42,16 +42,24 @@ static inline int row_below(const CheckerboardParams* params, int y) {
 }
 
 // Which neighbour each pixel takes after: 0 left, 1 right, 2 above, 3 below.
-typedef int8 Sides;
+typedef LaneInt Sides;
+
+static inline LaneMask are_second(Sides side) {
+  return (side & 1) != 0;
+}
+
+static inline LaneMask are_down(Sides side) {
+  return side >= 2;
+}
 
 typedef struct DepthsAround {
-  float8 left, right, above, below;
+  LaneFloat left, right, above, below;
 } DepthsAround;
 
-static inline float8 depth_on(Sides side, DepthsAround depths) {
-  const float8 across = select(depths.left, depths.right, side << 31);
-  const float8 down = select(depths.above, depths.below, side << 31);
-  return select(across, down, side << 30);
+static inline LaneFloat depth_on(Sides side, DepthsAround depths) {
+  const LaneFloat across = select(depths.left, depths.right, are_second(side));
+  const LaneFloat down = select(depths.above, depths.below, are_second(side));
+  return select(across, down, are_down(side));
 }
 
 static inline DepthsAround depths_around(const CheckerboardParams* params, DEPTH_TEXELS depth, int x, int y) {
@@ -66,24 +74,24 @@ static inline DepthsAround depths_around(const CheckerboardParams* params, DEPTH
 
 typedef struct Surfaces {
   Sides nearest, farthest;
-  float8 nearest_depth;  // 0 where there is none
-  float8 farthest_depth;
-  int8 is_surface;       // whether there is one at all: 0 or -1
+  LaneFloat nearest_depth;  // 0 where there is none
+  LaneFloat farthest_depth;
+  LaneMask is_surface;      // whether there is one at all
 } Surfaces;
 
-static inline int8 non_finite_depths(float8 depth) {
-  return (as_int8(depth) & 0x7fffffff) >= NON_FINITE_BITS;
+static inline LaneMask are_finite(LaneFloat values) {
+  return (as_lane_int(values) & 0x7fffffff) < NON_FINITE_BITS;
 }
 
-static inline float8 settled_depth(float8 depth, int8 inside) {
-  const float8 none = select((float8)(OUTSIDE), (float8)(NO_SURFACE), inside);
-  return select(none, depth, inside & ~non_finite_depths(depth));
+static inline LaneFloat settled_depth(LaneFloat depth, LaneMask inside) {
+  const LaneFloat none = select((LaneFloat)(OUTSIDE), (LaneFloat)(NO_SURFACE), inside);
+  return select(none, depth, inside & are_finite(depth));
 }
 
 static inline DepthsAround settled_depths(const CheckerboardParams* params, DepthsAround depths, int x, int y) {
-  const int8 lost = non_finite_depths(depths.left) | non_finite_depths(depths.right) |
-                    non_finite_depths(depths.above) | non_finite_depths(depths.below);
-  if (all_inside(params, x, y) && !any_of_eight(lost)) return depths;
+  const LaneMask finite =
+      are_finite(depths.left) & are_finite(depths.right) & are_finite(depths.above) & are_finite(depths.below);
+  if (all_inside(params, x, y) && all_lanes(finite)) return depths;
   const InsideAround inside = inside_around(params, x, y);
   const DepthsAround settled = {
       settled_depth(depths.left, inside.left), settled_depth(depths.right, inside.right),
@@ -92,45 +100,49 @@ static inline DepthsAround settled_depths(const CheckerboardParams* params, Dept
 }
 
 // Turns the depth of no surface into one as far in front, so that it is not the farthest.
-static inline float8 turned_over(float8 settled) {
+static inline LaneFloat turned_over(LaneFloat settled) {
   return select(settled, -settled, settled <= NO_SURFACE);
+}
+
+// `second` where the mask says so, else `first`.
+static inline Sides sides_of(int first, int second, LaneMask mask) {
+  return select((Sides)(first), (Sides)(second), mask);
 }
 
 // Returns the nearest and the farthest of the surfaces around; the first of two that are equal counts.
 static inline Surfaces surfaces_of(DepthsAround d) {
-  const int8 right_is_nearer = d.right > d.left, below_is_nearer = d.below > d.above;
-  const float8 across = max(d.left, d.right), down = max(d.above, d.below);
-  const Sides nearer_across = right_is_nearer & 1, nearer_down = 2 - below_is_nearer;
+  const LaneFloat none = (LaneFloat)(0.0f);
+  const LaneFloat across = max(d.left, d.right), down = max(d.above, d.below);
   Surfaces found;
-  found.nearest = select(nearer_across, nearer_down, down > across);
-  const float8 nearest = max(across, down);
+  found.nearest = select(sides_of(0, 1, d.right > d.left), sides_of(2, 3, d.below > d.above), down > across);
+  const LaneFloat nearest = max(across, down);
   found.is_surface = nearest > NO_SURFACE;
-  found.nearest_depth = as_float8(as_int8(nearest) & found.is_surface);
+  found.nearest_depth = select(none, nearest, found.is_surface);
 
-  const float8 left = turned_over(d.left), right = turned_over(d.right);
-  const float8 above = turned_over(d.above), below = turned_over(d.below);
-  const float8 far_across = min(left, right), far_down = min(above, below);
-  found.farthest = select((right < left) & 1, 2 - (below < above), far_down < far_across);
-  found.farthest_depth = as_float8(as_int8(min(far_across, far_down)) & found.is_surface);
+  const LaneFloat left = turned_over(d.left), right = turned_over(d.right);
+  const LaneFloat above = turned_over(d.above), below = turned_over(d.below);
+  const LaneFloat far_across = min(left, right), far_down = min(above, below);
+  found.farthest = select(sides_of(0, 1, right < left), sides_of(2, 3, below < above), far_down < far_across);
+  found.farthest_depth = select(none, min(far_across, far_down), found.is_surface);
   return found;
 }
 
 // Which surface a pixel shows as far as depth alone tells: the nearer one of the pair whose depths are closer.
 static inline Sides likely_sides(DepthsAround d, Sides nearest) {
-  const int8 pair_across = min(d.left, d.right) > NO_SURFACE, pair_down = min(d.above, d.below) > NO_SURFACE;
-  const int8 closer = fabs(d.left - d.right) <= fabs(d.above - d.below);
-  const Sides likely = select(nearest, 2 - (d.below > d.above), pair_down);
-  return select(likely, (d.right > d.left) & 1, pair_across & (~pair_down | closer));
+  const LaneMask pair_across = min(d.left, d.right) > NO_SURFACE, pair_down = min(d.above, d.below) > NO_SURFACE;
+  const LaneMask closer = fabs(d.left - d.right) <= fabs(d.above - d.below);
+  const Sides likely = select(nearest, sides_of(2, 3, d.below > d.above), pair_down);
+  return select(likely, sides_of(0, 1, d.right > d.left), pair_across & (mask_not(pair_down) | closer));
 }
 
 typedef struct ReactiveAround {
-  uint8 left, right, above, below;  // codes
+  LaneUint left, right, above, below;  // codes
 } ReactiveAround;
 
-static inline uint8 reactive_on(Sides side, ReactiveAround reactive) {
-  const uint8 across = select(reactive.left, reactive.right, as_uint8(side << 31));
-  const uint8 down = select(reactive.above, reactive.below, as_uint8(side << 31));
-  return select(across, down, as_uint8(side << 30));
+static inline LaneUint reactive_on(Sides side, ReactiveAround reactive) {
+  const LaneUint across = select(reactive.left, reactive.right, are_second(side));
+  const LaneUint down = select(reactive.above, reactive.below, are_second(side));
+  return select(across, down, are_down(side));
 }
 
 // 0 from outside the viewport.
@@ -138,18 +150,19 @@ static inline ReactiveAround reactive_around(const CheckerboardParams* params, R
   const InsideAround inside = inside_around(params, x, y);
   const TexelLayout layout = params->shaded.reactive;
   const int width = params->width;
+  const LaneUint none = (LaneUint)(0);
   const ReactiveAround reactive = {
-      load_every_other_reactive(texels, layout, x - 1, y, width) & as_uint8(inside.left),
-      load_every_other_reactive(texels, layout, x + 1, y, width) & as_uint8(inside.right),
-      load_every_other_reactive(texels, layout, x, row_above(y), width) & as_uint8(inside.above),
-      load_every_other_reactive(texels, layout, x, row_below(params, y), width) & as_uint8(inside.below)};
+      select(none, load_every_other_reactive(texels, layout, x - 1, y, width), inside.left),
+      select(none, load_every_other_reactive(texels, layout, x + 1, y, width), inside.right),
+      select(none, load_every_other_reactive(texels, layout, x, row_above(y), width), inside.above),
+      select(none, load_every_other_reactive(texels, layout, x, row_below(params, y), width), inside.below)};
   return reactive;
 }
 
 // 1 - the largest of the neighbours, and 0 exactly where that is 1.
-static inline float8 trust_in(ReactiveAround reactive) {
-  const uint8 largest = max(max(reactive.left, reactive.right), max(reactive.above, reactive.below));
-  const float8 rest = convert_float8(255u - largest);
+static inline LaneFloat trust_in(ReactiveAround reactive) {
+  const LaneUint largest = max(max(reactive.left, reactive.right), max(reactive.above, reactive.below));
+  const LaneFloat rest = to_lane_float(255u - largest);
   return FRACTION_OF_CODE(rest);
 }
 
@@ -175,155 +188,179 @@ static inline VelocitiesAround velocities_around(const CheckerboardParams* param
   return velocities;
 }
 
-static inline VelocityBits velocity_on(Sides side, VelocitiesAround velocities) {
-#if SOURCE_STORAGE == BUFFER && VELOCITY_FORMAT == HALF
-  const uint8 is_second = as_uint8(side << 31), is_down = as_uint8(side << 30);
+static inline VelocityBits select_velocities(VelocityBits otherwise, VelocityBits chosen, LaneMask mask) {
+#if LANES == 1
+  return mask ? chosen : otherwise;
+#elif SOURCE_STORAGE == BUFFER && VELOCITY_FORMAT == HALF
+  return select(otherwise, chosen, mask);
 #else
-  const ulong8 is_second = convert_ulong8(as_uint8(side)) << 63, is_down = convert_ulong8(as_uint8(side)) << 62;
+  return select(otherwise, chosen, convert_long8(mask));
 #endif
-  const VelocityBits across = select(velocities.left, velocities.right, is_second);
-  const VelocityBits down = select(velocities.above, velocities.below, is_second);
-  return select(across, down, is_down);
+}
+
+static inline VelocityBits velocity_on(Sides side, VelocitiesAround velocities) {
+  const VelocityBits across = select_velocities(velocities.left, velocities.right, are_second(side));
+  const VelocityBits down = select_velocities(velocities.above, velocities.below, are_second(side));
+  return select_velocities(across, down, are_down(side));
 }
 
 // Velocity on one axis each, in its own units.
 typedef struct Motion {
-  float8 x, y;
+  LaneFloat x, y;
 } Motion;
 
 static inline Motion motion_of(VelocityBits bits) {
 #if SOURCE_STORAGE == BUFFER && VELOCITY_FORMAT == HALF
   __private const half* halves = (__private const half*)&bits;
+#if LANES == 8
   const float16 both = (float16)(vload_half8(0, halves), vload_half8(1, halves));
 #else
+  const float2 both = vload_half2(0, halves);
+#endif
+#elif LANES == 8
   const float16 both = as_float16(bits);
+#else
+  const float2 both = as_float2(bits);
 #endif
   const Motion motion = {both.even, both.odd};
   return motion;
 }
 
 static inline Motion no_motion() {
-  const Motion motion = {(float8)(0.0f), (float8)(0.0f)};
+  const Motion motion = {(LaneFloat)(0.0f), (LaneFloat)(0.0f)};
   return motion;
 }
 
-static inline Motion camera_motion(const CheckerboardParams* params, int x, int y, float8 depth) {
-  const float8 column = convert_float8(every_other(x));
+static inline Motion camera_motion(const CheckerboardParams* params, int x, int y, LaneFloat depth) {
+  const LaneFloat column = to_lane_float(every_other(x));
   const float ndc_y = (float)y * params->camera.step_y + params->camera.start_y;
+#if LANES == 8
   const float8 first = velocity_of(column.lo, ndc_y, depth.lo, &params->camera);
   const float8 last = velocity_of(column.hi, ndc_y, depth.hi, &params->camera);
   const Motion motion = {(float8)(first.even, last.even), (float8)(first.odd, last.odd)};
+#else
+  const float8 velocity = velocity_of((float4)(column), ndc_y, (float4)(depth), &params->camera);
+  const Motion motion = {velocity.s0, velocity.s1};
+#endif
   return motion;
 }
 
 // On one axis: texels on both sides of a place, and how far it is from the lower one to the next. Not clamped.
 typedef struct Between {
-  int8 low;
-  float8 fraction;
+  LaneInt low;
+  LaneFloat fraction;
 } Between;
 
-static inline Between between_texels(float8 at) {
-  int8 low = convert_int8(at);
-  low += convert_float8(low) > at;  // towards minus infinity
-  const Between between = {low, at - convert_float8(low)};
+static inline Between between_texels(LaneFloat at) {
+  const LaneInt low = floor_lanes(at);
+  const Between between = {low, at - to_lane_float(low)};
   return between;
 }
 
 // The texels to read on both sides, clamped to the edge; one and the same where the place is a texel's own.
-static inline int8 lower_texel(Between between, int size) {
-  return clamp(between.low, (int8)(0), (int8)(size - 1));
+static inline LaneInt lower_texel(Between between, int size) {
+  return clamp(between.low, (LaneInt)(0), (LaneInt)(size - 1));
 }
 
-static inline int8 upper_texel(Between between, int size) {
-  return clamp(between.low - (between.fraction > 0.0f), (int8)(0), (int8)(size - 1));
+static inline LaneInt upper_texel(Between between, int size) {
+  const LaneInt upper = select(between.low, between.low + 1, between.fraction > 0.0f);
+  return clamp(upper, (LaneInt)(0), (LaneInt)(size - 1));
 }
 
-// Where eight pixels were in the previous frame.
+// Where pixels were in the previous frame.
 typedef struct Places {
   Between column, row;
   bool are_a_run;  // their texels on both sides are those of a run of sixteen in each of two rows
 } Places;
 
-static inline Places places_at(const CheckerboardParams* params, float8 x, float8 y) {
+static inline Places places_at(const CheckerboardParams* params, LaneFloat x, LaneFloat y) {
   Places places = {between_texels(x), between_texels(y), false};
+#if LANES == 8
   const int8 apart = (places.column.low - every_other(places.column.low.s0)) | (places.row.low - places.row.low.s0);
   places.are_a_run = !any_of_eight(apart) && run_is_inside(places.column.low.s0, params->previous_width);
+#endif
   return places;
 }
 
 // The two rows of a run.
 static inline int upper_row(const CheckerboardParams* params, Places places) {
-  return clamp(places.row.low.s0, 0, params->previous_height - 1);
+  return clamp(FIRST_LANE(places.row.low), 0, params->previous_height - 1);
 }
 
 static inline int lower_row(const CheckerboardParams* params, Places places) {
-  return clamp(places.row.low.s0 + 1, 0, params->previous_height - 1);
+  return clamp(FIRST_LANE(places.row.low) + 1, 0, params->previous_height - 1);
 }
 
-static inline float8 load_depth_at8(DEPTH_TEXELS depth, TexelLayout layout, int8 x, int8 y) {
-  return (float8)(load_depth_at(depth, layout, x.lo, y.lo), load_depth_at(depth, layout, x.hi, y.hi));
+static inline LaneFloat load_depths_at(DEPTH_TEXELS depth, TexelLayout layout, LaneInt x, LaneInt y) {
+#if LANES == 8
+  return (LaneFloat)(load_depth_at(depth, layout, x.lo, y.lo), load_depth_at(depth, layout, x.hi, y.hi));
+#else
+  return load_depth(depth, layout, x, y);
+#endif
 }
 
-static inline float8 mix_depths(float8 low, float8 high, float8 fraction) {
+static inline LaneFloat mix_depths(LaneFloat low, LaneFloat high, LaneFloat fraction) {
   return low + (high - low) * fraction;
 }
 
-// The previous depth at eight places, linear between texels.
-static inline float8 depth_between(const CheckerboardParams* params, DEPTH_TEXELS depth, Places places) {
+// The previous depth at the places, linear between texels.
+static inline LaneFloat depth_between(const CheckerboardParams* params, DEPTH_TEXELS depth, Places places) {
   const TexelLayout layout = params->previous_depth;
-#if SOURCE_STORAGE == BUFFER
-  if (LANES == 8 && places.are_a_run) {
+#if SOURCE_STORAGE == BUFFER && LANES == 8
+  if (places.are_a_run) {
     const float16 upper = vload16(0, depth + texel_index(layout, places.column.low.s0, upper_row(params, places)));
     const float16 lower = vload16(0, depth + texel_index(layout, places.column.low.s0, lower_row(params, places)));
     const float8 held = mix_depths(mix_depths(upper.even, upper.odd, places.column.fraction),
                                    mix_depths(lower.even, lower.odd, places.column.fraction), places.row.fraction);
-    if (!any_of_eight(non_finite_depths(held))) return held;  // else a texel may count that has no part in it
+    if (all_lanes(are_finite(held))) return held;  // else a texel may count that has no part in it
   }
 #endif
-  const int8 left = lower_texel(places.column, params->previous_width);
-  const int8 right = upper_texel(places.column, params->previous_width);
-  const int8 above = lower_texel(places.row, params->previous_height);
-  const int8 below = upper_texel(places.row, params->previous_height);
-  return mix_depths(mix_depths(load_depth_at8(depth, layout, left, above), load_depth_at8(depth, layout, right, above),
+  const LaneInt left = lower_texel(places.column, params->previous_width);
+  const LaneInt right = upper_texel(places.column, params->previous_width);
+  const LaneInt above = lower_texel(places.row, params->previous_height);
+  const LaneInt below = upper_texel(places.row, params->previous_height);
+  return mix_depths(mix_depths(load_depths_at(depth, layout, left, above), load_depths_at(depth, layout, right, above),
                                places.column.fraction),
-                    mix_depths(load_depth_at8(depth, layout, left, below), load_depth_at8(depth, layout, right, below),
+                    mix_depths(load_depths_at(depth, layout, left, below), load_depths_at(depth, layout, right, below),
                                places.column.fraction),
                     places.row.fraction);
 }
 
 // 1 inside [low, low + length], 0 from a pixel away on.
-static inline float8 inside_previous(float8 at, float low, float length) {
+static inline LaneFloat inside_previous(LaneFloat at, float low, float length) {
   return clamp(1.0f - max(low - at, at - (low + length)), 0.0f, 1.0f);
 }
 
 typedef struct Past {
   Places places;
-  float8 trust;
+  LaneFloat trust;
 } Past;
 
 static inline Past no_past() {
-  const Between nowhere = {(int8)(0), (float8)(0.0f)};
-  const Past past = {{nowhere, nowhere, false}, (float8)(0.0f)};
+  const Between nowhere = {(LaneInt)(0), (LaneFloat)(0.0f)};
+  const Past past = {{nowhere, nowhere, false}, (LaneFloat)(0.0f)};
   return past;
 }
 
 // Returns the past of surfaces of these depths and motions; `whole`: trust where all agrees.
 IN_REGISTERS static inline Past past_of(const CheckerboardParams* params, DEPTH_TEXELS previous, int x, int y,
-                                        float8 depth, Motion motion, int8 is_surface, float8 range, float8 whole) {
-  const int8 known = is_surface & ~non_finite_depths(motion.x) & ~non_finite_depths(motion.y);
-  const float8 moved_x = as_float8(as_int8(motion.x) & known) * params->motion_x;
-  const float8 moved_y = as_float8(as_int8(motion.y) & known) * params->motion_y;
-  const float8 at_x = convert_float8(every_other(x)) * params->step_x + params->start_x +
-                      clamp(moved_x, -FINITE_HALF_MAX, FINITE_HALF_MAX);
-  const float8 at_y =
+                                        LaneFloat depth, Motion motion, LaneMask is_surface, LaneFloat range,
+                                        LaneFloat whole) {
+  const LaneFloat none = (LaneFloat)(0.0f);
+  const LaneMask known = is_surface & are_finite(motion.x) & are_finite(motion.y);
+  const LaneFloat moved_x = select(none, motion.x, known) * params->motion_x;
+  const LaneFloat moved_y = select(none, motion.y, known) * params->motion_y;
+  const LaneFloat at_x = to_lane_float(every_other(x)) * params->step_x + params->start_x +
+                         clamp(moved_x, -FINITE_HALF_MAX, FINITE_HALF_MAX);
+  const LaneFloat at_y =
       (float)y * params->step_y + params->start_y + clamp(moved_y, -FINITE_HALF_MAX, FINITE_HALF_MAX);
   Past past;
   past.places = places_at(params, at_x, at_y);
-  const float8 before = depth_between(params, previous, past.places);
-  const float8 tolerance = DEPTH_TOLERANCE * fabs(depth) + RANGE_TOLERANCE * range + LEAST_TOLERANCE;
-  const float8 agreement = clamp(3.0f - 2.0f * fabs(before - depth) / tolerance, 0.0f, 1.0f);
-  const float8 trust = agreement * whole * inside_previous(at_x, params->edge_x, (float)params->previous_width) *
-                       inside_previous(at_y, params->edge_y, (float)params->previous_height);
-  past.trust = as_float8(as_int8(trust) & known & ~non_finite_depths(before));
+  const LaneFloat before = depth_between(params, previous, past.places);
+  const LaneFloat tolerance = DEPTH_TOLERANCE * fabs(depth) + RANGE_TOLERANCE * range + LEAST_TOLERANCE;
+  const LaneFloat agreement = clamp(3.0f - 2.0f * fabs(before - depth) / tolerance, 0.0f, 1.0f);
+  const LaneFloat trust = agreement * whole * inside_previous(at_x, params->edge_x, (float)params->previous_width) *
+                          inside_previous(at_y, params->edge_y, (float)params->previous_height);
+  past.trust = select(none, trust, known & are_finite(before));
   return past;
 }
