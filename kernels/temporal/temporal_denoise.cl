@@ -25,6 +25,8 @@
 // Source: Buades, Coll and Morel, "A non-local algorithm for image denoising", 2005; variances as in Rousselle, Knaus
 // and Zwicker, "Adaptive Rendering with Non-Local Means Filtering", 2012.
 // Reference: tests/reference/temporal_denoise.cpp
+#undef LANES
+#define LANES 8  // whatever the device: the pixels of an item share rows, which lie in memory anyway
 #include "arithmetic.h"
 #include "temporal/constants.h"
 #include "temporal/history.h"
@@ -178,8 +180,8 @@ static inline void denoise_row(const NoisyRow* middle, const NoisyPicture* pictu
       sum += weight;
     }
   }
-  store_tone8(output, picture->source, &picture->params, x, y, light, divisors, own, at_pixels(own.red) + red / sum,
-              at_pixels(own.green) + green / sum, at_pixels(own.blue) + blue / sum, 1.0f / picture->exposure);
+  store_tone(output, picture->source, &picture->params, x, y, light, divisors, own, at_pixels(own.red) + red / sum,
+             at_pixels(own.green) + green / sum, at_pixels(own.blue) + blue / sum, 1.0f / picture->exposure);
 }
 
 __kernel void temporal_denoise(const RefineParams params, const TexelLayout albedo_layout, int has_albedo, float noise,

@@ -32,40 +32,44 @@
 // Found by least squares against truth, and by search, on the development scenes (docs/temporal.md).
 
 typedef struct Strengths {
-  float8 sharpening;  // factor of the difference from the mean
-  float8 along;       // factor of the second derivative along an edge
-  float8 across;      // factor of that across it
+  LaneFloat sharpening;  // factor of the difference from the mean
+  LaneFloat along;       // factor of the second derivative along an edge
+  LaneFloat across;      // factor of that across it
 } Strengths;
 
 // As history stores them. Beyond the row's end its last texel repeats.
-static inline float8 confidences_at(HistoryLayer layer, int x, int y) {
+static inline LaneFloat confidences_at(HistoryLayer layer, int x, int y) {
+#if LANES == 1
+  return load_confidence(layer, y * layer.width + x);
+#else
   const int index = y * layer.width + x, last = (y + 1) * layer.width - 1;
   if (index + 7 <= last) return load_confidences8(layer, index);
   return (float8)(load_confidence(layer, index), load_confidence(layer, min(index + 1, last)),
                   load_confidence(layer, min(index + 2, last)), load_confidence(layer, min(index + 3, last)),
                   load_confidence(layer, min(index + 4, last)), load_confidence(layer, min(index + 5, last)),
                   load_confidence(layer, min(index + 6, last)), load_confidence(layer, min(index + 7, last)));
+#endif
 }
 
 // Returns the strengths for the pixels from (x, y) on.
 static inline Strengths strengths_at(HistoryLayer layer, int x, int y) {
-  const float8 stored = confidences_at(layer, x, y), known = fabs(stored), zero = (float8)(0.0f);
-  const int8 layered = as_int8(stored) >> 31;
-  const float8 sharpening = SHARPENING + SHARPENING_NEW / (known + SHARPENING_NEW_CONFIDENCE);
-  const float8 along = EDGE_SMOOTHING + EDGE_SMOOTHING_NEW / (known + EDGE_SMOOTHING_NEW_CONFIDENCE);
+  const LaneFloat stored = confidences_at(layer, x, y), known = fabs(stored), zero = (LaneFloat)(0.0f);
+  const LaneMask layered = as_lane_int(stored) < 0;
+  const LaneFloat sharpening = SHARPENING + SHARPENING_NEW / (known + SHARPENING_NEW_CONFIDENCE);
+  const LaneFloat along = EDGE_SMOOTHING + EDGE_SMOOTHING_NEW / (known + EDGE_SMOOTHING_NEW_CONFIDENCE);
   const Strengths strengths = {select(sharpening, zero, layered),
-                                    select(along, (float8)(EDGE_SMOOTHING_LAYERED), layered),
-                                    select(zero, (float8)(EDGE_SHARPENING_LAYERED), layered)};
+                               select(along, (LaneFloat)(EDGE_SMOOTHING_LAYERED), layered),
+                               select(zero, (LaneFloat)(EDGE_SHARPENING_LAYERED), layered)};
   return strengths;
 }
 
-// Edges at eight pixels: K cos 2a, K sin 2a and K, with a the direction across the edge.
+// Edges at the pixels: K cos 2a, K sin 2a and K, with a the direction across the edge.
 typedef struct Edges {
-  float8 cosine, sine, coherence;
+  LaneFloat cosine, sine, coherence;
 } Edges;
 
 // The sum over 3x3 texels, weighted (1 2 1) by (1 2 1) / 16.
-static inline float8 around_pixels(float16 above, float16 same, float16 below) {
+static inline LaneFloat around_pixels(float16 above, float16 same, float16 below) {
   const float16 column = above + 2.0f * same + below;
   return (on_the_left(column) + 2.0f * at_pixels(column) + on_the_right(column)) * 0.0625f;
 }
@@ -79,32 +83,31 @@ static inline Edges edges_of(const ToneRow* rows) {
   const float16 x0 = slope_x(rows[1].luma), x1 = slope_x(rows[2].luma), x2 = slope_x(rows[3].luma);
   const float16 y0 = 0.5f * (rows[2].luma - rows[0].luma), y1 = 0.5f * (rows[3].luma - rows[1].luma);
   const float16 y2 = 0.5f * (rows[4].luma - rows[2].luma);
-  const float8 xx = around_pixels(x0 * x0, x1 * x1, x2 * x2);
-  const float8 yy = around_pixels(y0 * y0, y1 * y1, y2 * y2);
-  const float8 xy = around_pixels(x0 * y0, x1 * y1, x2 * y2);
-  const float8 scale = 1.0f / (xx + yy + EDGE_GRADIENT_FLOOR);
-  const float8 cosine = (xx - yy) * scale, sine = 2.0f * xy * scale;
+  const LaneFloat xx = around_pixels(x0 * x0, x1 * x1, x2 * x2);
+  const LaneFloat yy = around_pixels(y0 * y0, y1 * y1, y2 * y2);
+  const LaneFloat xy = around_pixels(x0 * y0, x1 * y1, x2 * y2);
+  const LaneFloat scale = 1.0f / (xx + yy + EDGE_GRADIENT_FLOOR);
+  const LaneFloat cosine = (xx - yy) * scale, sine = 2.0f * xy * scale;
   const Edges edges = {cosine, sine, sqrt(cosine * cosine + sine * sine)};
   return edges;
 }
 
 // One channel of the pixels.
-static inline float8 refined(float16 above, float16 same, float16 below, Edges edges,
-                             Strengths by) {
+static inline LaneFloat refined(float16 above, float16 same, float16 below, Edges edges, Strengths by) {
   const float16 beside = above + below, apart = below - above, column = beside + same;
   const float16 low = min(min(above, below), same), high = max(max(above, below), same);
-  const float8 own = at_pixels(same);
-  const float8 mean = (on_the_left(column) + at_pixels(column) + on_the_right(column)) * (1.0f / 9.0f);
-  const float8 xx = on_the_left(same) + on_the_right(same) - 2.0f * own;
-  const float8 yy = at_pixels(beside) - 2.0f * own;
-  const float8 xy = 0.25f * (on_the_right(apart) - on_the_left(apart));
+  const LaneFloat own = at_pixels(same);
+  const LaneFloat mean = (on_the_left(column) + at_pixels(column) + on_the_right(column)) * (1.0f / 9.0f);
+  const LaneFloat xx = on_the_left(same) + on_the_right(same) - 2.0f * own;
+  const LaneFloat yy = at_pixels(beside) - 2.0f * own;
+  const LaneFloat xy = 0.25f * (on_the_right(apart) - on_the_left(apart));
   // K (D_n + D_t) and K (D_n - D_t).
-  const float8 sum = edges.coherence * (xx + yy);
-  const float8 difference = edges.cosine * (xx - yy) + 2.0f * edges.sine * xy;
-  const float8 moved = own + by.sharpening * (own - mean) + 0.5f * (by.along + by.across) * sum -
-                       0.5f * (by.along - by.across) * difference;
-  const float8 least = min(min(on_the_left(low), on_the_right(low)), at_pixels(low));
-  const float8 most = max(max(on_the_left(high), on_the_right(high)), at_pixels(high));
+  const LaneFloat sum = edges.coherence * (xx + yy);
+  const LaneFloat difference = edges.cosine * (xx - yy) + 2.0f * edges.sine * xy;
+  const LaneFloat moved = own + by.sharpening * (own - mean) + 0.5f * (by.along + by.across) * sum -
+                          0.5f * (by.along - by.across) * difference;
+  const LaneFloat least = min(min(on_the_left(low), on_the_right(low)), at_pixels(low));
+  const LaneFloat most = max(max(on_the_left(high), on_the_right(high)), at_pixels(high));
   return min(max(moved, least), most);
 }
 
@@ -112,10 +115,10 @@ static inline float8 refined(float16 above, float16 same, float16 below, Edges e
 static inline void refine_row(const ToneRow* rows, LightRow light, Strengths by, RESOLVED_TEXELS source,
                               OUTPUT_TEXELS output, const RefineParams* params, float inverse, int x, int y) {
   const Edges edges = edges_of(rows);
-  const float8 red = refined(rows[1].red, rows[2].red, rows[3].red, edges, by);
-  const float8 green = refined(rows[1].green, rows[2].green, rows[3].green, edges, by);
-  const float8 blue = refined(rows[1].blue, rows[2].blue, rows[3].blue, edges, by);
-  store_tone8(output, source, params, x, y, light, row_of_ones(), rows[2], red, green, blue, inverse);
+  const LaneFloat red = refined(rows[1].red, rows[2].red, rows[3].red, edges, by);
+  const LaneFloat green = refined(rows[1].green, rows[2].green, rows[3].green, edges, by);
+  const LaneFloat blue = refined(rows[1].blue, rows[2].blue, rows[3].blue, edges, by);
+  store_tone(output, source, params, x, y, light, row_of_ones(), rows[2], red, green, blue, inverse);
 }
 
 __kernel void temporal_refine(const RefineParams params, RESOLVED_TEXELS source, HISTORY_TEXELS history,
@@ -124,10 +127,10 @@ __kernel void temporal_refine(const RefineParams params, RESOLVED_TEXELS source,
   if (top >= params.height) return;
 
   const HistoryLayer layer = {history, params.width, params.height};
-  const int stride = (int)get_global_size(0) * kRefineBlock;
+  const int stride = (int)get_global_size(0) * kLanes;
   const int bottom = min(top + kRefineBlock, params.height);
   const float factor = exposure->factor;
-  for (int x = get_global_id(0) * kRefineBlock; x < params.width; x += stride) {
+  for (int x = get_global_id(0) * kLanes; x < params.width; x += stride) {
     ToneRow rows[5];
     LightRow own = light_row(source, &params, factor, x, top), next = light_row(source, &params, factor, x, top + 1);
     rows[1] = tone_of(light_row(source, &params, factor, x, top - 2));

@@ -39,8 +39,8 @@ Pass::Pass(const PassSetup& setup, const PassSpec& spec)
       kernel_(build_kernel(setup.device, spec.kernel, options_of(spec, setup.device))),
       shape_(
           with_smaller_group(setup.device.profile.shape_of(spec.kernel), max_items(kernel_, setup.device))),
-      items_at_once_(setup.device.info.compute_units *
-                     (setup.device.lanes == 1 ? kItemsOfGpuUnit : kItemsOfCpuUnit)),
+      lanes_(setup.device.lanes),
+      items_at_once_(setup.device.info.compute_units * (lanes_ == 1 ? kItemsOfGpuUnit : kItemsOfCpuUnit)),
       items_of_one_group_(std::clamp(static_cast<std::size_t>(shape_.group_width * shape_.group_height),
                                      std::min(kLeastItemsOfOneGroup, max_items(kernel_, setup.device)),
                                      max_items(kernel_, setup.device))) {

@@ -102,6 +102,8 @@ class Pass {
 
  protected:
   const WorkShape& shape() const { return shape_; }
+  // The pixels that a work-item makes at once: 8 or 1.
+  int lanes() const { return lanes_; }
   const PlanFacts& facts() const { return facts_; }
   const ResolveSettings& settings() const { return facts_.settings; }
   bool uses(Resource resource) const { return uses_[index_of(resource)]; }
@@ -147,6 +149,7 @@ class Pass {
   std::array<cl::Memory, 2> stand_ins_;  // a buffer, and an image where inputs are images
   cl::Kernel kernel_;
   WorkShape shape_;
+  int lanes_;
   int items_at_once_;
   std::size_t items_of_one_group_;  // of launch_group()
 };

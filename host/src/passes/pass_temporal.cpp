@@ -294,8 +294,9 @@ void plan_merge_histories(const PlanFacts& facts, PassList& list) {
 
 namespace {
 
-constexpr int divided_up(int value) {
-  return (value + kRefineBlock - 1) / kRefineBlock;
+// The blocks of `width` x kRefineBlock pixels that cover an extent.
+Extent blocks_of(Extent extent, int width) {
+  return {(extent.width + width - 1) / width, (extent.height + kRefineBlock - 1) / kRefineBlock};
 }
 
 RefineParams refine_params(const PassFrame& frame, Resource source, Resource output) {
@@ -315,7 +316,7 @@ class TemporalDenoisePass : public Pass {
     bind(frame, refine_params(frame, Resource::kNoisy, denoised), layout_of(albedo), frame.albedo ? 1 : 0,
          facts().settings.temporal.noise, Resource::kNoisy, albedo, displayed_history_of(facts()), denoised,
          Resource::kExposure);
-    const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
+    const Extent blocks = blocks_of(frame.output, kRefineBlock);
     launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
   }
 };
@@ -327,7 +328,7 @@ class TemporalRefinePass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     bind(frame, refine_params(frame, Resource::kUnrefined, picture()), Resource::kUnrefined,
          displayed_history_of(facts()), picture(), Resource::kExposure);
-    const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
+    const Extent blocks = blocks_of(frame.output, lanes());
     launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
   }
 };

@@ -75,7 +75,7 @@ typedef struct ResizeParams {
 } ResizeParams;
 QUINCUNX_CHECK_SIZE(ResizeParams, 64);
 
-enum { kRefineBlock = 8 };  // pixels on each side of the square that a work-item makes at a time
+enum { kRefineBlock = 8 };  // rows that a work-item makes at a time, and pixels of them in temporal_denoise
 
 typedef struct RefineParams {
   int width;  // extent of the picture

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rows of a picture in tone space, sixteen texels at a time, for kernels that look around each of the middle eight; and
+// Rows of a picture in tone space, sixteen texels at a time, for kernels that look around the pixels in the lanes; and
 // the way back.
 //
 // Options: SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
@@ -12,24 +12,22 @@
 #include "temporal/temporal_params.h"
 #include "texel.h"
 
-enum { kRowMargin = 4 };  // texels before the eight pixels of a row, and after them
+enum { kRowMargin = 4 };  // texels before the pixels of a row
 
-// Sixteen texels of a row; the pixels are the middle eight.
+// Sixteen texels of a row; the pixels are those of kRowMargin on.
 typedef struct ToneRow {
   float16 red, green, blue, luma;
 } ToneRow;
 
-static inline float8 at_pixels(float16 row) {
-  return row.s456789ab;
-}
-
-static inline float8 on_the_left(float16 row) {
-  return row.s3456789a;
-}
-
-static inline float8 on_the_right(float16 row) {
-  return row.s56789abc;
-}
+#if LANES == 8
+#define at_pixels(row) ((row).s456789ab)
+#define on_the_left(row) ((row).s3456789a)
+#define on_the_right(row) ((row).s56789abc)
+#else
+#define at_pixels(row) ((row).s4)
+#define on_the_left(row) ((row).s3)
+#define on_the_right(row) ((row).s5)
+#endif
 
 // Each texel's left and right neighbour; the outermost texel stands in for what lies beyond.
 static inline float16 to_the_left(float16 row) {
@@ -92,18 +90,18 @@ static inline ToneRow tone_of(LightRow light) {
   return tone;
 }
 
-// Light of eight values in tone space; of those that stay, as it was.
-static inline float8 light_of(float8 tone, float8 scale, float8 before, int8 stays) {
+// Light of values in tone space; of those that stay, as it was.
+static inline LaneFloat light_of(LaneFloat tone, LaneFloat scale, LaneFloat before, LaneMask stays) {
   return select(min(max(tone * scale, -FINITE_HALF_MAX), FINITE_HALF_MAX), before, stays);
 }
 
 // The first `count` pixels of a row, with the alpha of `source`.
-static inline void store_light8(OUTPUT_TEXELS output, RESOLVED_TEXELS source, const RefineParams* params,
-                                int x, int y, int count, float8 red, float8 green, float8 blue) {
-  float reds[8], greens[8], blues[8];
-  vstore8(red, 0, reds);
-  vstore8(green, 0, greens);
-  vstore8(blue, 0, blues);
+static inline void store_light(OUTPUT_TEXELS output, RESOLVED_TEXELS source, const RefineParams* params,
+                               int x, int y, int count, LaneFloat red, LaneFloat green, LaneFloat blue) {
+  float reds[kLanes], greens[kLanes], blues[kLanes];
+  STORE_LANES(red, reds);
+  STORE_LANES(green, greens);
+  STORE_LANES(blue, blues);
   for (int i = 0; i < count; ++i) {
     const float alpha = load_resolved(source, params->source, x + i, y).w;
     store_output(output, params->output, x + i, y, (float4)(reds[i], greens[i], blues[i], alpha));
@@ -112,15 +110,15 @@ static inline void store_light8(OUTPUT_TEXELS output, RESOLVED_TEXELS source, co
 
 // Stores the pixels from (x, y) on, whose light was `light` and tone `before`, that of light over `factors`. Those of
 // which no channel has moved keep their light. `inverse`: Exposure's.
-static inline void store_tone8(OUTPUT_TEXELS output, RESOLVED_TEXELS source, const RefineParams* params,
-                               int x, int y, LightRow light, LightRow factors, ToneRow before, float8 red,
-                               float8 green, float8 blue, float inverse) {
-  const int8 stays =
+static inline void store_tone(OUTPUT_TEXELS output, RESOLVED_TEXELS source, const RefineParams* params,
+                              int x, int y, LightRow light, LightRow factors, ToneRow before, LaneFloat red,
+                              LaneFloat green, LaneFloat blue, float inverse) {
+  const LaneMask stays =
       (red == at_pixels(before.red)) & (green == at_pixels(before.green)) & (blue == at_pixels(before.blue));
-  const float8 brightest = max(max(max(red, green), blue), 0.0f);
-  const float8 scale = 1.0f / max(1.0f - brightest, TONE_REST_MIN);
-  store_light8(output, source, params, x, y, min(params->width - x, (int)kRefineBlock),
-               light_of(red, scale * at_pixels(factors.red), at_pixels(light.red), stays) * inverse,
-               light_of(green, scale * at_pixels(factors.green), at_pixels(light.green), stays) * inverse,
-               light_of(blue, scale * at_pixels(factors.blue), at_pixels(light.blue), stays) * inverse);
+  const LaneFloat brightest = max(max(max(red, green), blue), 0.0f);
+  const LaneFloat scale = 1.0f / max(1.0f - brightest, TONE_REST_MIN);
+  store_light(output, source, params, x, y, min(params->width - x, (int)kLanes),
+              light_of(red, scale * at_pixels(factors.red), at_pixels(light.red), stays) * inverse,
+              light_of(green, scale * at_pixels(factors.green), at_pixels(light.green), stays) * inverse,
+              light_of(blue, scale * at_pixels(factors.blue), at_pixels(light.blue), stays) * inverse);
 }
