@@ -24,6 +24,12 @@
 #define REACH 8                      // samples, found by search on the development scenes
 #define SAME_SURFACE (1.0f / 32.0f)  // fraction of a depth; a power of two, so that the product is exact
 
+// The dilated depths of the samples in the lanes, from x on, and of those left and right of each.
+typedef struct DilatedDepths {
+  LaneFloat left, own, right;
+} DilatedDepths;
+
+#if LANES == 8
 // The depths of columns x - 2 to x + 5, clamped to the edge.
 static inline float8 load_depth_columns(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width) {
 #if SOURCE_STORAGE == BUFFER
@@ -33,22 +39,42 @@ static inline float8 load_depth_columns(DEPTH_TEXELS texels, TexelLayout layout,
                   load_depth4(texels, layout, block_columns(x + 2, width), y));
 }
 
-// The dilated depths of four samples of a row, x to x + 3, and of those left and right of each.
-typedef struct DilatedDepths {
-  float4 left, own, right;
-} DilatedDepths;
-
-static inline DilatedDepths load_dilated_depths(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width,
-                                                int height) {
+// The largest depth in each of those columns of three rows.
+static inline float8 most_of_columns(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width, int height) {
   const float8 above = load_depth_columns(texels, layout, x, max(y - 1, 0), width);
   const float8 row = load_depth_columns(texels, layout, x, y, width);
   const float8 below = load_depth_columns(texels, layout, x, min(y + 1, height - 1), width);
-  const float8 most = fmax(fmax(above, row), below);
-  const DilatedDepths depths = {fmax(fmax(most.s0123, most.s1234), most.s2345),
-                                fmax(fmax(most.s1234, most.s2345), most.s3456),
-                                fmax(fmax(most.s2345, most.s3456), most.s4567)};
+  return fmax(fmax(above, row), below);
+}
+
+static inline DilatedDepths load_dilated_depths(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width,
+                                                int height) {
+  const float8 a = most_of_columns(texels, layout, x, y, width, height);
+  const float8 b = most_of_columns(texels, layout, x + 4, y, width, height);
+  const float8 c1 = (float8)(a.s1234, b.s1234), c2 = (float8)(a.s2345, b.s2345), c3 = (float8)(a.s3456, b.s3456);
+  const DilatedDepths depths = {fmax(fmax((float8)(a.s0123, b.s0123), c1), c2), fmax(fmax(c1, c2), c3),
+                                fmax(fmax(c2, c3), (float8)(a.s4567, b.s4567))};
   return depths;
 }
+#else
+// The largest depth of a column, clamped to the edge, in three rows.
+static inline float most_of_column(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width, int height) {
+  const int column = clamp(x, 0, width - 1);
+  return fmax(fmax(load_depth(texels, layout, column, max(y - 1, 0)), load_depth(texels, layout, column, y)),
+              load_depth(texels, layout, column, min(y + 1, height - 1)));
+}
+
+static inline DilatedDepths load_dilated_depths(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width,
+                                                int height) {
+  const float c0 = most_of_column(texels, layout, x - 2, y, width, height);
+  const float c1 = most_of_column(texels, layout, x - 1, y, width, height);
+  const float c2 = most_of_column(texels, layout, x, y, width, height);
+  const float c3 = most_of_column(texels, layout, x + 1, y, width, height);
+  const float c4 = most_of_column(texels, layout, x + 2, y, width, height);
+  const DilatedDepths depths = {fmax(fmax(c0, c1), c2), fmax(fmax(c1, c2), c3), fmax(fmax(c2, c3), c4)};
+  return depths;
+}
+#endif
 
 // That of one sample; that of the sample alone where it is more than `limit`, which says enough.
 static inline float load_dilated_depth(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width, int height,
@@ -60,33 +86,56 @@ static inline float load_dilated_depth(DEPTH_TEXELS texels, TexelLayout layout, 
   return most;
 }
 
-static inline int8 both_axes(int4 lanes) {
-  return (int8)(lanes.s0, lanes.s0, lanes.s1, lanes.s1, lanes.s2, lanes.s2, lanes.s3, lanes.s3);
+// Loads the velocities of the samples in the lanes, from x on, clamped to the edge.
+static inline LaneVelocities load_velocities(VELOCITY_TEXELS texels, TexelLayout layout, int x, int y, int width) {
+#if LANES == 8
+  const float8 left = load_velocity_block(texels, layout, x, y, width);
+  const float8 right = load_velocity_block(texels, layout, x + 4, y, width);
+  const LaneVelocities found = {(float8)(left.even, right.even), (float8)(left.odd, right.odd)};
+#else
+  const float2 velocity = load_velocity(texels, layout, clamp(x, 0, width - 1), y);
+  const LaneVelocities found = {velocity.x, velocity.y};
+#endif
+  return found;
 }
 
-static inline float8 select_velocities(float8 otherwise, float8 velocity, int4 lanes) {
-  return as_float8(select(as_int8(otherwise), as_int8(velocity), both_axes(lanes)));
+// Stores those of columns before `end`.
+static inline void store_velocities(STORED_VELOCITY texels, TexelLayout layout, int x, int y, int end,
+                                    LaneVelocities v) {
+#if LANES == 8
+  const float8 left = (float8)(v.x.s0, v.y.s0, v.x.s1, v.y.s1, v.x.s2, v.y.s2, v.x.s3, v.y.s3);
+  const float8 right = (float8)(v.x.s4, v.y.s4, v.x.s5, v.y.s5, v.x.s6, v.y.s6, v.x.s7, v.y.s7);
+  store_velocity4(texels, layout, x, y, end, left);
+  if (x + 4 < end) store_velocity4(texels, layout, x + 4, y, end, right);
+#else
+  store_velocity4(texels, layout, x, y, x + 1, (float8)(v.x, v.y, v.x, v.y, v.x, v.y, v.x, v.y));
+#endif
 }
 
-// Four samples of a row that look for a neighbour of their own depth, and the velocity of the closest so far.
-typedef struct FourSearches {
-  float4 depth, closest;
-  float8 velocity;
-} FourSearches;
+static inline LaneVelocities select_velocities(LaneVelocities otherwise, LaneVelocities velocity, LaneMask mask) {
+  const LaneVelocities taken = {select(otherwise.x, velocity.x, mask), select(otherwise.y, velocity.y, mask)};
+  return taken;
+}
 
-// The neighbours in columns x to x + 3 of row y, of these dilated depths.
-static inline void look_at(FourSearches* found, const UndilateParams* params, VELOCITY_TEXELS velocities, int x, int y,
-                           float4 dilated) {
-  const int4 column = x + (int4)(0, 1, 2, 3);
-  const float4 apart = fabs(dilated - found->depth);
-  const int4 is_closer = (apart < found->closest) & (column >= 0) & (column < params->frame.width);
-  if (!any(is_closer)) return;
-  const float8 velocity = load_velocity_block(velocities, params->dilated, x, y, params->frame.width);
+// Samples of a row that look for a neighbour of their own depth, and the velocity of the closest so far.
+typedef struct Searches {
+  LaneFloat depth, closest;
+  LaneVelocities velocity;
+} Searches;
+
+// The neighbours in the columns from x on of row y, of these dilated depths.
+static inline void look_at(Searches* found, const UndilateParams* params, VELOCITY_TEXELS velocities, int x, int y,
+                           LaneFloat dilated) {
+  const LaneInt column = x + LANE_NUMBERS;
+  const LaneFloat apart = fabs(dilated - found->depth);
+  const LaneMask is_closer = (apart < found->closest) & (column >= 0) & (column < params->frame.width);
+  if (!any_lane(is_closer)) return;
+  const LaneVelocities velocity = load_velocities(velocities, params->dilated, x, y, params->frame.width);
   found->closest = select(found->closest, apart, is_closer);
   found->velocity = select_velocities(found->velocity, velocity, is_closer);
 }
 
-static inline void look_around(FourSearches* found, const UndilateParams* params, VELOCITY_TEXELS velocities,
+static inline void look_around(Searches* found, const UndilateParams* params, VELOCITY_TEXELS velocities,
                                DEPTH_TEXELS depths, int x, int y, DilatedDepths own_row) {
   const int width = params->frame.width, height = params->frame.height;
   for (int row = max(y - 1, 0); row <= min(y + 1, height - 1); ++row) {
@@ -121,57 +170,64 @@ static inline int2 place_of_same(const UndilateParams* params, DEPTH_TEXELS dept
   return place;
 }
 
-// Returns four samples' velocities, with those that are `missing` taken from two to REACH samples away. Lanes that find
-// none keep their velocity and their mark.
-static inline float8 look_afar(const UndilateParams* params, VELOCITY_TEXELS velocities, DEPTH_TEXELS depths, int x,
-                               int y, float4 depth, float8 velocity, int4* missing) {
-  for (int i = 0; i < kBlock; ++i) {
-    const int4 lane = ((int4)(0, 1, 2, 3) == i) & *missing;
-    if (!any(lane)) continue;
-    const float own = i == 0 ? depth.s0 : i == 1 ? depth.s1 : i == 2 ? depth.s2 : depth.s3;
-    const int2 place = place_of_same(params, depths, x + i, y, own);
-    if (place.x < 0) continue;
-    const float2 there = load_velocity(velocities, params->dilated, place.x, place.y);
-    velocity = select_velocities(velocity, (float8)(there, there, there, there), lane);
-    *missing &= ~lane;
+// Takes the velocities that are `missing` from two to REACH samples away. Lanes that find none keep their velocity and
+// their mark.
+static inline void look_afar(const UndilateParams* params, VELOCITY_TEXELS velocities, DEPTH_TEXELS depths, int x,
+                             int y, LaneFloat depth, LaneVelocities* velocity, LaneMask* missing) {
+  for (int i = 0; i < kLanes; ++i) {
+    if (FIRST_LANE(*missing)) {
+      const int2 place = place_of_same(params, depths, x + i, y, FIRST_LANE(depth));
+      if (place.x >= 0) {
+        const float2 there = load_velocity(velocities, params->dilated, place.x, place.y);
+        FIRST_LANE(velocity->x) = there.x;
+        FIRST_LANE(velocity->y) = there.y;
+        FIRST_LANE(*missing) = 0;
+      }
+    }
+    depth = NEXT_LANES(depth);
+    velocity->x = NEXT_LANES(velocity->x);
+    velocity->y = NEXT_LANES(velocity->y);
+    *missing = NEXT_LANES(*missing);
   }
-  return velocity;
 }
 
-static inline float8 camera_velocities(const UndilateParams* params, int x, int y, float4 depth) {
+static inline LaneVelocities camera_velocities(const UndilateParams* params, int x, int y, LaneFloat depth) {
   __private const CameraVelocity* camera = &params->frame.camera;
   const float ndc_y = (float)y * camera->step_y + camera->start_y;
-  const float2 unit = (float2)(params->to_drawn_x, params->to_drawn_y);
-  const float8 moved = velocity_of(convert_float4(x + (int4)(0, 1, 2, 3)), ndc_y, depth, camera);
-  return clamp(moved * (float8)(unit, unit, unit, unit), -FINITE_HALF_MAX, FINITE_HALF_MAX);
+  const LaneVelocities moved = velocities_of(to_lane_float(x + LANE_NUMBERS), ndc_y, depth, camera);
+  const LaneVelocities drawn = {clamp(moved.x * params->to_drawn_x, -FINITE_HALF_MAX, FINITE_HALF_MAX),
+                                clamp(moved.y * params->to_drawn_y, -FINITE_HALF_MAX, FINITE_HALF_MAX)};
+  return drawn;
 }
 
 __kernel void undilate_velocity(const UndilateParams params, DEPTH_TEXELS depth, VELOCITY_TEXELS dilated,
                                 STORED_VELOCITY velocity) {
   const VelocityParams frame = params.frame;
-  const int y = get_global_id(1);
-  const int first = get_global_id(0) * frame.columns_per_item;
-  if (first >= frame.width || y >= frame.height) return;
+  const int y = get_global_id(1), width = frame.width;
+  const ItemColumns item = columns_of_item(frame.columns_per_item, width, kLanes);
+  if (item.first >= item.end || y >= frame.height) return;
 
-  const int end = min(first + frame.columns_per_item, frame.width);
-  for (int x = first; x < end; x += kBlock) {
-    float8 found = load_velocity_block(dilated, params.dilated, x, y, frame.width);
-    const float4 own = load_depth_block(depth, frame.depth, x, y, frame.width);
-    const DilatedDepths row = load_dilated_depths(depth, frame.depth, x, y, frame.width, frame.height);
-    const int4 is_taken = (row.own > own) & (own >= 0.0f) & (x + (int4)(0, 1, 2, 3) < end);
-    if (any(is_taken)) {
-      const float4 tolerance = own * SAME_SURFACE;
-      const int4 is_covered = is_taken & (row.own - own > tolerance);
-      FourSearches search = {own, INFINITY, found};
+  for (int x = item.first; x < item.end; x += item.step) {
+    const int end = x + pixels_from(item, x);
+    LaneVelocities found = load_velocities(dilated, params.dilated, x, y, width);
+    const LaneInt columns = min(x + LANE_NUMBERS, (LaneInt)(width - 1));
+    const LaneFloat own = load_depth_lanes(depth, frame.depth, columns, y);
+    const DilatedDepths row = load_dilated_depths(depth, frame.depth, x, y, width, frame.height);
+    const LaneMask is_taken = (row.own > own) & (own >= 0.0f) & (x + LANE_NUMBERS < end);
+    if (any_lane(is_taken)) {
+      const LaneFloat tolerance = own * SAME_SURFACE;
+      const LaneMask is_covered = is_taken & (row.own - own > tolerance);
+      Searches search = {own, (LaneFloat)(INFINITY), found};
       look_around(&search, &params, dilated, depth, x, y, row);
-      const int4 is_found = is_taken & (search.closest <= select((float4)(0.0f), tolerance, is_covered));
+      const LaneMask is_found =
+          is_taken & (search.closest <= select((LaneFloat)(0.0f), tolerance, is_covered));
       found = select_velocities(found, search.velocity, is_found);
-      int4 missing = is_covered & ~is_found;
-      if (any(missing)) {
-        found = look_afar(&params, dilated, depth, x, y, own, found, &missing);
+      LaneMask missing = is_covered & mask_not(is_found);
+      if (any_lane(missing)) {
+        look_afar(&params, dilated, depth, x, y, own, &found, &missing);
         if (params.has_camera) found = select_velocities(found, camera_velocities(&params, x, y, own), missing);
       }
     }
-    store_velocity4(velocity, frame.velocity, x, y, end, found);
+    store_velocities(velocity, frame.velocity, x, y, end, found);
   }
 }

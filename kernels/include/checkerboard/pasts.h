@@ -204,10 +204,7 @@ static inline VelocityBits velocity_on(Sides side, VelocitiesAround velocities) 
   return select_velocities(across, down, are_down(side));
 }
 
-// Velocity on one axis each, in its own units.
-typedef struct Motion {
-  LaneFloat x, y;
-} Motion;
+typedef LaneVelocities Motion;  // in velocity's own units
 
 static inline Motion motion_of(VelocityBits bits) {
 #if SOURCE_STORAGE == BUFFER && VELOCITY_FORMAT == HALF
@@ -232,17 +229,8 @@ static inline Motion no_motion() {
 }
 
 static inline Motion camera_motion(const CheckerboardParams* params, int x, int y, LaneFloat depth) {
-  const LaneFloat column = to_lane_float(every_other(x));
   const float ndc_y = (float)y * params->camera.step_y + params->camera.start_y;
-#if LANES == 8
-  const float8 first = velocity_of(column.lo, ndc_y, depth.lo, &params->camera);
-  const float8 last = velocity_of(column.hi, ndc_y, depth.hi, &params->camera);
-  const Motion motion = {(float8)(first.even, last.even), (float8)(first.odd, last.odd)};
-#else
-  const float8 velocity = velocity_of((float4)(column), ndc_y, (float4)(depth), &params->camera);
-  const Motion motion = {velocity.s0, velocity.s1};
-#endif
-  return motion;
+  return velocities_of(to_lane_float(every_other(x)), ndc_y, depth, &params->camera);
 }
 
 // On one axis: texels on both sides of a place, and how far it is from the lower one to the next. Not clamped.
