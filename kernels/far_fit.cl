@@ -6,7 +6,8 @@
 //   previous  in   FarModel of the frame before; all zero where there is none
 //   match     in   FarMatch of the frame before
 //   motion    out  FarModel
-// One work-item, so that the order of additions never changes.
+// One work-group: an item sums some of the terms over all cells, so that the order of additions never changes, and the
+// first one solves.
 #include "motion/velocity_params.h"
 
 #define LEAST_PIVOT 1e-7f  // relative to the diagonal, about 1: a smaller pivot is rounding alone
@@ -21,17 +22,10 @@ static inline int product_index(int row, int column) {
   return row * (row + 1) / 2 + column;
 }
 
-static inline FarSums total_of(__global const FarSums* sums, int cells) {
-  FarSums total = sums[0];
-  for (int cell = 1; cell < cells; ++cell) {
-    for (int i = 0; i < kFarProducts; ++i) total.products[i] += sums[cell].products[i];
-    for (int i = 0; i < kFarTerms; ++i) total.velocities[i] += sums[cell].velocities[i];
-  }
-  return total;
-}
+enum { kFarSums = kFarProducts + kFarTerms };  // floats of FarSums
 
 // Cholesky's lower triangle, in place.
-static inline void decompose(float* m) {
+static inline void decompose(__local float* m) {
   for (int i = 0; i < kFarTerms; ++i) {
     for (int j = 0; j <= i; ++j) {
       float rest = m[product_index(i, j)];
@@ -42,7 +36,7 @@ static inline void decompose(float* m) {
 }
 
 // In place, from the right side of the equations to the solution.
-static inline void substitute(const float* lower, float* v) {
+static inline void substitute(__local const float* lower, __local float* v) {
   for (int i = 0; i < kFarTerms; ++i) {
     for (int k = 0; k < i; ++k) v[i] -= lower[product_index(i, k)] * v[k];
     v[i] /= lower[product_index(i, i)];
@@ -55,9 +49,17 @@ static inline void substitute(const float* lower, float* v) {
 
 __kernel void far_fit(const int cells, __global const FarSums* sums, __global const FarModel* previous,
                       __global const FarMatch* match, __global FarModel* motion) {
-  if (get_global_id(0) != 0 || get_global_id(1) != 0) return;
+  __local FarSums total;
+  __local float* of_total = (__local float*)&total;
+  for (int i = get_local_id(0); i < kFarSums; i += (int)get_local_size(0)) {
+    __global const float* term = (__global const float*)sums + i;
+    float sum = term[0];
+    for (int cell = 1; cell < cells; ++cell) sum += term[cell * kFarSums];
+    of_total[i] = sum;
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+  if (get_local_id(0) != 0) return;
 
-  FarSums total = total_of(sums, cells);
   float scale[kFarTerms];
   for (int i = 0; i < kFarTerms; ++i) {
     const float square = total.products[product_index(i, i)];

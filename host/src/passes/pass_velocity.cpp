@@ -131,7 +131,7 @@ class FarFitPass : public Pass {
     const auto cells = static_cast<cl_int>(extent_of(Area::kFarCells, frame.extents()).area());
     bind(frame, cells, Resource::kFarSums, Resource::kPreviousFarMotion, Resource::kFarMatch,
          Resource::kFarMotion);
-    launch(frame, {1, 1}, 1, event);
+    launch_group(frame, event);
   }
 };
 
