@@ -119,14 +119,14 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
                         __global const float* previous_reprojection, __global float* reprojection,
                         __global float* open_trust) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.width || y >= params.height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kBlock);
+  if (item.first >= item.end || y >= params.height) return;
 
-  const int end = min(first + params.columns_per_item, params.width);
   const float row = (float)y * params.step_y + params.start_y;
   const int4 last_x = max(params.previous_width - 2, 0);
   const int4 last_y = max(params.previous_height - 2, 0);
-  for (int x = first; x < end; x += kBlock) {
+  for (int x = item.first; x < item.end; x += item.step) {
+    const int count = pixels_from(item, x);  // of four; with one lane nobody asks for the others, and they cost nothing
     will_read_below(&params, velocity0, depth0, x, y);
     WILL_WRITE(reprojection + 4 * (texel_index(params.reprojection, x, y) + kReprojectionAhead));
     const float4 depth = load_depth_block(depth0, params.depth0, x, y, params.width);
@@ -165,7 +165,7 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
     trust /= 1.0f + residual_x * residual_x + residual_y * residual_y;
 #endif
 #if OPEN_TRUST
-    store_floats(open_trust + y * params.width + x, end - x, trust);
+    store_floats(open_trust + y * params.width + x, count, trust);
 #endif
     trust = select((float4)(0.0f), trust, before.least <= limit);  // visible
     found.trust = as_float4(select(as_int4(trust), (int4)(NAN_BITS), lost));
@@ -180,6 +180,6 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
 #else
     found.motion_edge = (float4)(0.0f);
 #endif
-    store_reprojections(reprojection, texel_index(params.reprojection, x, y), end - x, found);
+    store_reprojections(reprojection, texel_index(params.reprojection, x, y), count, found);
   }
 }

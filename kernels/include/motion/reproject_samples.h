@@ -83,7 +83,8 @@ static inline float4 motion_edges_at(const ReprojectParams* params, VELOCITY_TEX
     const float8 same = load_velocity_block(texels, params->velocity0, x, row, params->width);
     const float8 right = load_velocity_block(texels, params->velocity0, x + 1, row, params->width);
     const int8 own = as_int8(velocity);
-    if (!any_of_eight((own ^ as_int8(left)) | (own ^ as_int8(same)) | (own ^ as_int8(right)))) continue;  // most often
+    if (LANES == 8 && !any_of_eight((own ^ as_int8(left)) | (own ^ as_int8(same)) | (own ^ as_int8(right))))
+      continue;  // most often
     largest = larger_difference(params, largest, velocity, left);
     largest = larger_difference(params, largest, velocity, same);
     largest = larger_difference(params, largest, velocity, right);

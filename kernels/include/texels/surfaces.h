@@ -190,7 +190,7 @@ static inline DepthRange depth_ranges(DEPTH_TEXELS texels, TexelLayout layout, i
 #if SOURCE_STORAGE == BUFFER
   // Where surfaces are wider than a block and nothing scales the four lie side by side.
   const long2 apart = as_long2((x - (x.s0 + (int4)(0, 1, 2, 3))) | (y - y.s0));
-  if ((apart.x | apart.y) == 0 && x.s0 + 4 < width) {
+  if (LANES == 8 && (apart.x | apart.y) == 0 && x.s0 + 4 < width) {
     __global const float* upper = texels + texel_index(layout, x.s0, y.s0);
     __global const float* lower = upper + layout.pitch;
     return range_of_rows(vload4(0, upper), vload4(0, upper + 1), vload4(0, lower), vload4(0, lower + 1));
