@@ -126,7 +126,7 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
   const int4 last_x = max(params.previous_width - 2, 0);
   const int4 last_y = max(params.previous_height - 2, 0);
   for (int x = item.first; x < item.end; x += item.step) {
-    const int count = pixels_from(item, x);  // of four; with one lane nobody asks for the others, and they cost nothing
+    const int count = pixels_from(item, x);  // one lane asks for one of four; compilers drop the work for the others
     will_read_below(&params, velocity0, depth0, x, y);
     WILL_WRITE(reprojection + 4 * (texel_index(params.reprojection, x, y) + kReprojectionAhead));
     const float4 depth = load_depth_block(depth0, params.depth0, x, y, params.width);

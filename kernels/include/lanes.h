@@ -22,6 +22,7 @@ enum { kLanes = LANES };
 typedef float8 LaneFloat;
 typedef int8 LaneInt;
 typedef uint8 LaneUint;
+typedef ulong8 LaneUlong;
 typedef int8 LaneMask;
 #define as_lane_float(lanes) as_float8(lanes)
 #define as_lane_int(lanes) as_int8(lanes)
@@ -42,6 +43,7 @@ typedef int8 LaneMask;
 typedef float LaneFloat;
 typedef int LaneInt;
 typedef uint LaneUint;
+typedef ulong LaneUlong;
 typedef bool LaneMask;
 #define as_lane_float(lanes) as_float(lanes)
 #define as_lane_int(lanes) as_int(lanes)

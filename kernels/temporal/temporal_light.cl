@@ -155,8 +155,13 @@ typedef struct CellsAround {
 } CellsAround;
 
 // Returns the sums of three in a row around the two in the middle.
-static inline float2 three(float4 row) {
+static inline float2 sums_of_row(float4 row) {
   return row.s01 + row.s12 + row.s23;
+}
+
+// Returns the sums over 3x3 cells around each of the tile's four, by such sums of four rows.
+static inline float4 sums_of_rows(const float2* rows) {
+  return (float4)(rows[0] + rows[1] + rows[2], rows[1] + rows[2] + rows[3]);
 }
 
 // `explained`: of each sample's brightening, by the broad gain.
@@ -178,16 +183,13 @@ static inline CellsAround cells_around(__global const TileEvidence* evidence, in
     }
     const float4 counts = OF_CELLS(cells, count);
     const float4 own = OF_CELLS(cells, brightening) - explained * counts;
-    brightening[j] = three(own);
-    brighter[j] = three(OF_CELLS(cells, brighter));
-    count[j] = three(counts);
+    brightening[j] = sums_of_row(own);
+    brighter[j] = sums_of_row(OF_CELLS(cells, brighter));
+    count[j] = sums_of_row(counts);
     means[j] = own / max(counts, 1.0f);
   }
-  const CellsAround around = {
-      (float4)(brightening[0] + brightening[1] + brightening[2], brightening[1] + brightening[2] + brightening[3]),
-      (float4)(brighter[0] + brighter[1] + brighter[2], brighter[1] + brighter[2] + brighter[3]),
-      (float4)(count[0] + count[1] + count[2], count[1] + count[2] + count[3]),
-      (float16)(means[0], means[1], means[2], means[3])};
+  const CellsAround around = {sums_of_rows(brightening), sums_of_rows(brighter), sums_of_rows(count),
+                              (float16)(means[0], means[1], means[2], means[3])};
   return around;
 }
 
@@ -231,8 +233,7 @@ static inline float4 judge(const float4* inputs) {
 // The same of the cells of a tile, by what they say `now` and said before, in a tile of such flicker, and by what the
 // tile itself and the 3x3 tiles around say. Whether a cell has become brighter or darker does not matter.
 static inline float4 judge_cells(const CellsAround* grid, const CellLight* now, const CellLight* before, float flicker,
-                                 __global const TileEvidence* tile,
-                                 const TileEvidence* tiles) {
+                                 __global const TileEvidence* tile, const TileEvidence* tiles) {
   const float4 mean = OF_CELLS(now, mean_brightening), own_count = OF_CELLS(tile->cells, count);
   const float4 direction = select((float4)(1.0f), (float4)(-1.0f), mean < 0.0f);
   const float of_tiles = max(tiles->count, 1.0f), usual = tiles->neighbour_error / of_tiles + JUDGE_ERROR_FLOOR;
@@ -370,6 +371,7 @@ __kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReproj
                              __global const TileLight* previous, __global TileLight* light) {
   const int y = get_global_id(1);
   if (y >= tiles_y) return;
+  // By number: what a row has in common would stay in registers over the loop, 25 of a GPU's.
   for (int i = y * tiles_x + (int)get_global_id(0); i < (y + 1) * tiles_x; i += (int)get_global_size(0))
     light[i] = light_of(tiles_x, tiles_y, tiles, evidence, total, previous, i % tiles_x, i / tiles_x);
 }

@@ -16,11 +16,6 @@ enum { kRun = 2 * kLanes };  // pixels of a row that are made at once: every oth
 #endif
 
 // Texels of a target as their bits, for those that are copied and not computed with.
-#if LANES == 8
-typedef ulong8 LaneUlong;
-#else
-typedef ulong LaneUlong;
-#endif
 #if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF
 typedef LaneUlong ColourBits;
 #define COLOUR_WORD ulong
@@ -119,12 +114,12 @@ static inline ColourBits load_every_other_colour(COLOUR_TEXELS texels, TexelLayo
 #endif
 }
 
-// Of four texels, or of one where there is one lane.
+// A group of texels is one half of the lanes, four, or the one lane there is.
 #if LANES == 8
-typedef float16 SomeTexels;
-typedef int16 SomeChannels;
-typedef float4 SomeFloats;  // one of each texel
-typedef int4 SomeMask;
+typedef float16 GroupTexels;
+typedef int16 GroupChannels;
+typedef float4 GroupFloats;  // one of each texel
+typedef int4 GroupMask;
 #define LEFT(lanes) ((lanes).lo)
 #define RIGHT(lanes) ((lanes).hi)
 #define LEFT_TEXELS(texels) ((texels).left)
@@ -133,10 +128,10 @@ typedef int4 SomeMask;
 #define IN_CHANNELS(values) OF_FOUR(values)  // each in all channels of its texel
 #define MASK_IN_CHANNELS(mask) OF_FOUR(mask)
 #else
-typedef float4 SomeTexels;
-typedef int4 SomeChannels;
-typedef float SomeFloats;
-typedef bool SomeMask;
+typedef float4 GroupTexels;
+typedef int4 GroupChannels;
+typedef float GroupFloats;
+typedef bool GroupMask;
 #define LEFT(lane) (lane)
 #define LEFT_TEXELS(texel) (texel)
 #define BOTH(left, right) (left)

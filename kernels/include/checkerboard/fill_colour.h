@@ -8,7 +8,7 @@
 #define LEAST_DIFFERENCE 1e-30f  // squared: two pairs that are equal count alike
 #define MOST_DIFFERENCE 1e18f    // its square is finite
 
-static inline SomeChannels non_finite_channels(SomeTexels value) {
+static inline GroupChannels non_finite_channels(GroupTexels value) {
 #if LANES == 8
   return (as_int16(value) & 0x7fffffff) >= NON_FINITE_BITS;
 #else
@@ -26,7 +26,7 @@ static inline bool any_is_lost(LaneTexels colours) {
 }
 
 // In all channels of each pixel whether one is set.
-static inline SomeChannels in_any_channel(SomeChannels lanes) {
+static inline GroupChannels in_any_channel(GroupChannels lanes) {
 #if LANES == 8
   const int16 pairs = lanes | lanes.s1032547698badcfe;
   return pairs | pairs.s23016745ab89efcd;
@@ -35,23 +35,24 @@ static inline SomeChannels in_any_channel(SomeChannels lanes) {
 #endif
 }
 
-// The neighbours of some pixels. Where one is missing, outside or not finite, another stands in for it, so that the
-// range of the four and the mean of both pairs are those of the ones that are there; all are 0 where there is none.
+// The neighbours of a group of pixels. Where one is missing, outside or not finite, another stands in for it, so that
+// the range of the four and the mean of both pairs are those of the ones that are there; all are 0 where there is none.
 typedef struct ColoursAround {
-  SomeTexels left, right, above, below;
-  SomeChannels is_missing;  // one or more
+  GroupTexels left, right, above, below;
+  GroupChannels is_missing;  // one or more
 } ColoursAround;
 
-static inline ColoursAround stand_in(ColoursAround c, SomeMask left, SomeMask right, SomeMask above, SomeMask below) {
-  const SomeTexels none = (SomeTexels)(0.0f);
-  const SomeChannels has_left = MASK_IN_CHANNELS(left) & ~in_any_channel(non_finite_channels(c.left));
-  const SomeChannels has_right = MASK_IN_CHANNELS(right) & ~in_any_channel(non_finite_channels(c.right));
-  const SomeChannels has_above = MASK_IN_CHANNELS(above) & ~in_any_channel(non_finite_channels(c.above));
-  const SomeChannels has_below = MASK_IN_CHANNELS(below) & ~in_any_channel(non_finite_channels(c.below));
-  const SomeTexels first_across = select(none, select(c.right, c.left, has_left), has_left | has_right);
-  const SomeTexels first_down = select(none, select(c.below, c.above, has_above), has_above | has_below);
-  const SomeTexels last_across = select(first_across, c.right, has_right);
-  const SomeTexels last_down = select(first_down, c.below, has_below);
+static inline ColoursAround stand_in(ColoursAround c, GroupMask left, GroupMask right, GroupMask above,
+                                     GroupMask below) {
+  const GroupTexels none = (GroupTexels)(0.0f);
+  const GroupChannels has_left = MASK_IN_CHANNELS(left) & ~in_any_channel(non_finite_channels(c.left));
+  const GroupChannels has_right = MASK_IN_CHANNELS(right) & ~in_any_channel(non_finite_channels(c.right));
+  const GroupChannels has_above = MASK_IN_CHANNELS(above) & ~in_any_channel(non_finite_channels(c.above));
+  const GroupChannels has_below = MASK_IN_CHANNELS(below) & ~in_any_channel(non_finite_channels(c.below));
+  const GroupTexels first_across = select(none, select(c.right, c.left, has_left), has_left | has_right);
+  const GroupTexels first_down = select(none, select(c.below, c.above, has_above), has_above | has_below);
+  const GroupTexels last_across = select(first_across, c.right, has_right);
+  const GroupTexels last_down = select(first_down, c.below, has_below);
   ColoursAround found;
   found.left = select(first_down, first_across, has_left | has_right);
   found.right = select(last_down, last_across, has_left | has_right);
@@ -61,7 +62,7 @@ static inline ColoursAround stand_in(ColoursAround c, SomeMask left, SomeMask ri
   return found;
 }
 
-// Those of all lanes.
+// The neighbours of the pixels in all lanes.
 typedef struct LanesAround {
   ColoursAround left;
 #if LANES == 8
@@ -72,7 +73,7 @@ typedef struct LanesAround {
 static inline LanesAround colours_around(const CheckerboardParams* params, ColourBits left, ColourBits right,
                                          ColourBits above, ColourBits below, int x, int y) {
   const LaneTexels l = colours_of(left), r = colours_of(right), a = colours_of(above), b = colours_of(below);
-  const SomeChannels none = (SomeChannels)(0);
+  const GroupChannels none = (GroupChannels)(0);
   LanesAround around;
   around.left = (ColoursAround){LEFT_TEXELS(l), LEFT_TEXELS(r), LEFT_TEXELS(a), LEFT_TEXELS(b), none};
 #if LANES == 8
@@ -91,7 +92,7 @@ static inline LanesAround colours_around(const CheckerboardParams* params, Colou
 }
 
 // The sum over the channels of each pixel, in all of them.
-static inline SomeTexels over_channels(SomeTexels value) {
+static inline GroupTexels over_channels(GroupTexels value) {
 #if LANES == 8
   const float16 pairs = value + value.s1032547698badcfe;
   return pairs + pairs.s23016745ab89efcd;
@@ -102,16 +103,16 @@ static inline SomeTexels over_channels(SomeTexels value) {
 }
 
 // Squared.
-static inline SomeTexels difference_of(SomeTexels a, SomeTexels b) {
-  const SomeTexels apart = clamp(a - b, -MOST_DIFFERENCE, MOST_DIFFERENCE);
+static inline GroupTexels difference_of(GroupTexels a, GroupTexels b) {
+  const GroupTexels apart = clamp(a - b, -MOST_DIFFERENCE, MOST_DIFFERENCE);
   return over_channels(apart * apart);
 }
 
 // The mean of left and right, and that of above and below, by the squared difference of the other pair.
-static inline SomeTexels mean_along_edge(ColoursAround c) {
-  const SomeTexels by_across = difference_of(c.above, c.below) + LEAST_DIFFERENCE;
-  const SomeTexels by_down = difference_of(c.left, c.right) + LEAST_DIFFERENCE;
-  const SomeTexels part = select(by_across / (by_across + by_down), (SomeTexels)(0.5f), c.is_missing);
+static inline GroupTexels mean_along_edge(ColoursAround c) {
+  const GroupTexels by_across = difference_of(c.above, c.below) + LEAST_DIFFERENCE;
+  const GroupTexels by_down = difference_of(c.left, c.right) + LEAST_DIFFERENCE;
+  const GroupTexels part = select(by_across / (by_across + by_down), (GroupTexels)(0.5f), c.is_missing);
   return (c.left + c.right) * 0.5f * part + (c.above + c.below) * 0.5f * (1.0f - part);
 }
 
@@ -162,17 +163,17 @@ IN_REGISTERS static inline LaneTexels previous_colours(const CheckerboardParams*
 }
 
 // Within the neighbours' range.
-static inline SomeTexels in_range(ColoursAround around, SomeTexels colour) {
-  const SomeTexels low = min(min(around.left, around.right), min(around.above, around.below));
-  const SomeTexels high = max(max(around.left, around.right), max(around.above, around.below));
+static inline GroupTexels in_range(ColoursAround around, GroupTexels colour) {
+  const GroupTexels low = min(min(around.left, around.right), min(around.above, around.below));
+  const GroupTexels high = max(max(around.left, around.right), max(around.above, around.below));
   return clamp(colour, low, high);
 }
 
 // The previous colours, in range, as far as they are trusted and finite; over the rest.
-static inline SomeTexels over_rest(ColoursAround around, SomeTexels held, SomeFloats trust, SomeTexels rest) {
-  const SomeTexels none = (SomeTexels)(0.0f);
-  const SomeChannels lost = in_any_channel(non_finite_channels(held));
-  const SomeTexels part = select(IN_CHANNELS(trust), none, lost);
+static inline GroupTexels over_rest(ColoursAround around, GroupTexels held, GroupFloats trust, GroupTexels rest) {
+  const GroupTexels none = (GroupTexels)(0.0f);
+  const GroupChannels lost = in_any_channel(non_finite_channels(held));
+  const GroupTexels part = select(IN_CHANNELS(trust), none, lost);
   return in_range(around, select(held, none, lost)) * part + rest * (1.0f - part);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A history of two layers: its texels, and rows of them. Eight pixels read twelve texels of a row if they lie between
-// texels, and eight if they lie on texels; one pixel reads four. All may lie anywhere and are clamped to the edge.
+// texels, and eight if they lie on texels; one pixel reads texel by texel. All may lie anywhere and are clamped to the
+// edge.
 #pragma once
 
 #include "bits.h"
@@ -213,7 +214,7 @@ static inline float sample_near_alpha(const PastLayers* past, DEPTH_TEXELS depth
 }
 #endif
 
-// ---- Rows of eight or twelve.
+// ---- Rows of eight or twelve texels, or single ones.
 
 // Where they lie.
 typedef struct RowWindows {
@@ -257,7 +258,7 @@ static inline LayerChannels push_channels(LayerChannels row, float16 texels) {
   return pushed;
 }
 
-// Loads a row.
+// Loads a row, whatever the column.
 static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth, RowWindows windows, int row,
                                       int column) {
   const RowFloats none = (RowFloats)(0.0f);
@@ -285,7 +286,7 @@ static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth
   return loaded;
 }
 #else
-// Loads the texel in `column` of a row.
+// Loads one texel of a row, the one in `column`.
 static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth, RowWindows windows, int row,
                                       int column) {
   const int x = clamp(windows.first.x + column, 0, past->far.width - 1);

@@ -188,7 +188,7 @@ static inline DepthRange range_of_rows(float4 upper_left, float4 upper_right, fl
 // NaN does not count.
 static inline DepthRange depth_ranges(DEPTH_TEXELS texels, TexelLayout layout, int4 x, int4 y, int width) {
 #if SOURCE_STORAGE == BUFFER
-  // Where surfaces are wider than a block and nothing scales the four lie side by side.
+  // Where surfaces are wider than a block and nothing scales the four lie side by side. One lane asks for one of them.
   const long2 apart = as_long2((x - (x.s0 + (int4)(0, 1, 2, 3))) | (y - y.s0));
   if (LANES == 8 && (apart.x | apart.y) == 0 && x.s0 + 4 < width) {
     __global const float* upper = texels + texel_index(layout, x.s0, y.s0);
