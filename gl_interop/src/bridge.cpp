@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "caller_texture.h"
-#include "current_context.h"
 #include "gl_sharing.h"
 #include "host_copy.h"
 #include "quincunx/advanced/log.h"

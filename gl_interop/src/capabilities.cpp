@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "current_context.h"
+#include "state_scope.h"
 
 namespace quincunx::gl {
 namespace {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "state_scope.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+
+#include <atomic>
+#include <initializer_list>
 
 #include "cl_handle.h"
 #include "quincunx/advanced/log.h"
@@ -10,6 +14,32 @@
 
 namespace quincunx::gl {
 namespace {
+
+// A function of a window system. Looked for only in libraries that are loaded already, as that of a current context is:
+// libepoxy would load them, and ends the process where one is missing.
+class Function {
+ public:
+  constexpr Function(const char* name, std::initializer_list<const char*> libraries)
+      : name_(name), libraries_(libraries) {}
+
+  void* operator()() {
+    Pointer found = found_.load(std::memory_order_relaxed);
+    for (const char* const* library = libraries_.begin(); found == nullptr && library != libraries_.end();
+         ++library) {
+      // Never closed: the pointer is kept.
+      if (void* const handle = dlopen(*library, RTLD_LAZY | RTLD_NOLOAD))
+        found = reinterpret_cast<Pointer>(dlsym(handle, name_));
+    }
+    found_.store(found, std::memory_order_relaxed);
+    return found != nullptr ? found() : nullptr;
+  }
+
+ private:
+  using Pointer = void* (*)();
+  const char* name_;
+  std::initializer_list<const char*> libraries_;
+  std::atomic<Pointer> found_ = nullptr;
+};
 
 // Alignment first, which is 1 inside, where all others are 0; the last is of desktop OpenGL alone.
 using PixelStore = std::array<GLenum, 5>;
@@ -80,6 +110,18 @@ void set_blending(bool on, const std::array<GLint, 6>& values) {
 }
 
 }  // namespace
+
+CurrentContext current_context() {
+  static constexpr std::initializer_list<const char*> kEgl = {"libEGL.so.1"};
+  static constexpr std::initializer_list<const char*> kGlx = {"libGLX.so.0", "libGL.so.1"};
+  static Function egl_context("eglGetCurrentContext", kEgl);
+  static Function egl_display("eglGetCurrentDisplay", kEgl);
+  static Function glx_context("glXGetCurrentContext", kGlx);
+  static Function glx_display("glXGetCurrentDisplay", kGlx);
+  if (void* const context = egl_context()) return {WindowSystem::kEgl, context, egl_display()};
+  if (void* const context = glx_context()) return {WindowSystem::kGlx, context, glx_display()};
+  return {};
+}
 
 PackScope::PackScope(Before before) {
   begin_plain(kPack, store_, before);

@@ -1,13 +1,26 @@
 // SPDX-License-Identifier: MIT
 // OpenGL's state that the bridge changes, saved, and put back at the end of a scope: callers are in the middle of a
-// frame of theirs. Each scope asks for the values that it changes, and for no others.
+// frame of theirs. Each scope asks for the values that it changes, and for no others. And the context that is current.
 #pragma once
 
 #include <epoxy/gl.h>
 
 #include <array>
 
+#include "quincunx_gl/context.h"
+
 namespace quincunx::gl {
+
+// The OpenGL context that is current on this thread, whoever made it.
+struct CurrentContext {
+  WindowSystem system = WindowSystem::kEgl;
+  void* context = nullptr;  // null: none
+  void* display = nullptr;
+
+  friend bool operator==(const CurrentContext&, const CurrentContext&) = default;
+};
+
+CurrentContext current_context();
 
 // Where a scope has the values from that it puts back.
 enum class Before {

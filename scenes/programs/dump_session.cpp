@@ -13,7 +13,6 @@
 #include "frames/target_file.h"
 #include "render/truth.h"
 #include "tools/image/display_light.h"
-#include "tools/image/flip.h"
 #include "tools/image/image_io.h"
 #include "tools/image/image_metrics.h"
 

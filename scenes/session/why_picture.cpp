@@ -16,7 +16,6 @@
 #include "session/calibration.h"
 #include "session/paced_loop.h"
 #include "tools/image/contact_sheet.h"
-#include "tools/image/flip.h"
 #include "tools/image/image_metrics.h"
 #include "tools/page/scored_frames.h"
 #include "tools/program/clock.h"

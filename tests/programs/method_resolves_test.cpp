@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "frames/picture_options.h"
-#include "tools/image/flip.h"
+#include "tools/image/image_metrics.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "c_interface/c_settings.h"
+#include "c_interface/c_frame.h"
 #include "quincunx/image.h"
 #include "quincunx/quincunx.h"
 

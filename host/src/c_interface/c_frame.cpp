@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "c_interface/c_settings.h"
 #include "c_interface/sized_struct.h"
 #include "quincunx/c/settings.h"
 

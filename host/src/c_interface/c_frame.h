@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Frames of the C interface as the library's own, with images in host memory, and reports back. Pure, but for
-// HostImages.
+// Settings and frames of the C interface as the library's own, with images in host memory, and settings and reports
+// back. Pure, but for HostImages.
 #pragma once
 
 #include <array>
@@ -10,10 +10,30 @@
 
 #include "plan/resources.h"
 #include "quincunx/c/frame.h"
+#include "quincunx/c/settings.h"
 #include "quincunx/device.h"
+#include "quincunx/resolve_plan.h"
 #include "quincunx/resolve_service.h"
 
 namespace quincunx::c {
+
+struct SceneSettings {
+  SceneNeeds needs;
+  ResolveSettings resolve;
+};
+
+// struct_size is 0.
+quincunx_settings to_c(const SceneSettings& settings);
+
+// Errors: kInvalidArgument for a struct_size that is none, and for a number that is no value of its field; the
+// message names the field. Checks that plan_for() makes are left to it.
+Result<SceneSettings> from_c(const quincunx_settings* settings);
+
+// struct_size is 0.
+quincunx_needs needs_of(const ResolvePlan& plan);
+
+// Returns the status with C's names of the fields in place of those of C++.
+Status in_c_words(const Status& status);
 
 // An image in host memory that stands for `view`, whose memory is then only a name for it.
 struct HostMemory {

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "c_interface/c_frame.h"
-#include "c_interface/c_settings.h"
 #include "c_interface/calls.h"
 #include "c_interface/sized_struct.h"
 #include "quincunx/advanced/device_profile.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "c_interface/c_settings.h"
+#include "c_interface/c_frame.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/image/flip.h"
+#include "tools/image/image_metrics.h"
 
 #include <algorithm>
 #include <array>

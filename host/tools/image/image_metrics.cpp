@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "tools/image/flip.h"
 #include "tools/image/image_io.h"
 
 namespace quincunx::tools {

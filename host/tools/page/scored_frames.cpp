@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "tools/image/flip.h"
 #include "tools/image/image_io.h"
+#include "tools/image/image_metrics.h"
 
 namespace quincunx::tools {
 namespace {

@@ -11,8 +11,8 @@
 #include "bench/speed_error/bench_findings.h"
 #include "bench/speed_error/bench_statistics.h"
 #include "embedded_bench_files.h"
-#include "tools/image/flip.h"
 #include "tools/image/image_io.h"
+#include "tools/image/image_metrics.h"
 #include "tools/page/page.h"
 
 namespace quincunx::bench {
