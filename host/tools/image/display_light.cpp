@@ -189,7 +189,7 @@ Result<InputColour> InputColour::of(const std::string& path, const ImagePart& pa
   InputColour colour;
   colour.straight_ = part.straight_alpha;
   colour.gain_ = part.gain;
-  if (named.empty()) colour.unused_profile_ = part.icc_profile;
+  if (named.empty()) colour.unapplied_ = part.unapplied;
   colour.name_ = named.empty() ? part.colour_space : named;
   const std::string lower = in_lower_case(colour.name_);
   for (const LinearSpace& space : linear_spaces()) {
@@ -223,8 +223,7 @@ Result<InputColour> InputColour::of(const std::string& path, const ImagePart& pa
 std::string InputColour::name() const {
   std::string text = name_;
   if (has_gain()) text += fmt::format(", times {:.4g}", fmt::join(gain_, " "));
-  if (!unused_profile_.empty())
-    text += fmt::format(" (its ICC profile '{}' is not applied)", unused_profile_);
+  if (!unapplied_.empty()) text += fmt::format(" (its {} is not applied)", unapplied_);
   return text;
 }
 

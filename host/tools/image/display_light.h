@@ -40,7 +40,7 @@ class InputColour {
   // Whether nothing is to be done.
   bool is_light() const { return !curve_ && !matrix_ && !straight_ && !has_gain(); }
   // Whether the file's user should hear its name.
-  bool is_news() const { return !is_light() || !unused_profile_.empty(); }
+  bool is_news() const { return !is_light() || !unapplied_.empty(); }
   std::string name() const;
 
   void apply(std::span<float> rgba) const;
@@ -49,7 +49,7 @@ class InputColour {
   bool has_gain() const { return gain_ != ImagePart().gain; }
 
   std::string name_;
-  std::string unused_profile_;  // the name of an ICC profile that says something else
+  std::string unapplied_;  // what the file says of its colours beside the name
   ColourCurve curve_;
   std::array<float, 3> gain_ = ImagePart().gain;  // after the curve
   std::optional<std::array<float, 9>> matrix_;    // row by row; after the gain

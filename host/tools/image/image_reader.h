@@ -46,7 +46,7 @@ struct ImagePart {
   std::string view = {};                  // "left"; empty: none is named
   float pixel_aspect = 1;                 // width of a pixel over its height
   std::string colour_space = {};          // "linear", "sRGB", "Gamma2.2", as the file or its format has it
-  std::string icc_profile = {};           // its name, where it is not sRGB's; nothing applies it
+  std::string unapplied = {};             // what else it says of its colours, which nothing applies
   std::array<float, 3> gain = {1, 1, 1};  // makes light of linear colour
   std::optional<Chromaticities> chromaticities = {};
   bool straight_alpha = false;  // colour is not multiplied by alpha
