@@ -83,18 +83,35 @@ static inline bool is_change_of_light(const LightChange* change, const EvidenceA
          fabs(change->relative) > RELIGHT_CHANGE_MIN;
 }
 
-static inline bool is_relit(__global const TotalLight* total) {
-  const float whole = (float)total->brightening, change = (float)total->change, light = (float)total->light;
-  return fabs(whole) > WHOLE_COHERENCE_MIN * change && fabs(whole) > RELIGHT_CHANGE_MIN * light;
-}
-
 static inline float rejection_by_cut(__global const TotalLight* total) {
   const float error = (float)total->history_error, usual = (float)total->neighbour_error;
   if (!(error > CUT_ERROR_MIN * (float)total->light)) return 0.0f;
   return (error - CUT_RATIO_MIN * usual) / (CUT_RATIO_RANGE * usual + 1.0f);
 }
 
-// ---- The broad gain.
+// ---- The broad gain. Sums of LagTotal are float4, as its fields.
+
+static inline float4 load_lags(__global const LagTotal* lags, int part) {
+  return convert_float4(vload4(part, &lags->lag));
+}
+
+// Returns how far tiles agree about a lag, by its sign: 0 if as many lag either way, 1 or more if all lag one way.
+static inline float agreement_of(float4 sum) {
+  return sum.z / (USUAL_LAG_MAX * max(sum.y, 1.0f));
+}
+
+// Whether the whole picture is in another light. A few tiles do not make it so, however much they change.
+static inline bool is_relit(__global const TotalLight* total) {
+  float lag = 0.0f, lit = 0.0f, usual = 0.0f;
+  UNROLL(kLagParts)
+  for (int i = 0; i < kLagParts; ++i) {
+    lag += (float)total->lags[i].lag;
+    lit += (float)total->lags[i].lit;
+    usual += (float)total->lags[i].usual_lag;
+  }
+  return lag * usual > 0.0f && fabs(usual) > WHOLE_AGREEMENT_MIN * USUAL_LAG_MAX * lit &&
+         fabs(lag) > RELIGHT_CHANGE_MIN * lit;
+}
 
 // Returns the weight of a part of the picture for a place `along` it, in [0, 1], or along a part next to it: a
 // quadratic B-spline.
@@ -109,23 +126,25 @@ static inline float4 lags_around(__global const LagTotal* lags, int tiles_x, int
   const int column = at_x / (2 * tiles_x), row = at_y / (2 * tiles_y);
   const float along_x = (float)(at_x % (2 * tiles_x)) / (float)(2 * tiles_x);
   const float along_y = (float)(at_y % (2 * tiles_y)) / (float)(2 * tiles_y);
-  float4 sum = (float4)(0.0f);  // as the fields of LagTotal
+  float4 sum = (float4)(0.0f);
   for (int j = max(row - 1, 0); j <= min(row + 1, kLagRows - 1); ++j) {
     float4 across = (float4)(0.0f);
     for (int i = max(column - 1, 0); i <= min(column + 1, kLagColumns - 1); ++i)
-      across += part_weight(i - column, along_x) * convert_float4(vload4(j * kLagColumns + i, &lags->lag));
+      across += part_weight(i - column, along_x) * load_lags(lags, j * kLagColumns + i);
     sum += part_weight(j - row, along_y) * across;
   }
   return sum;
 }
 
 // Returns how far history lags behind, in parts of its light. What only some tiles show is a change of its own there:
-// it counts little; so does what few tiles show. `units`: of a tile's light.
+// it counts little. So does a lag that few tiles show, or of which they do not agree. `units`: of a tile's light.
 static inline float lag_of(float4 sum, float units) {
   if (!(sum.x * sum.z > 0.0f)) return 0.0f;
   const float tiles = sum.y / units, square = tiles * tiles;
   const float mean = sum.x / max(sum.y, 1.0f);
-  const float usual = sum.z / max(sum.w, units * LAG_TILES / (square * square));
+  const float agreed = agreement_of(sum) / LAG_AGREEMENT_MIN, doubt = max(1.0f - agreed * agreed, 0.0f);
+  const float without = max(sum.w, LAG_DOUBT * doubt * doubt * sum.y);
+  const float usual = sum.z / max(without, units * LAG_TILES / (square * square));
   return fabs(mean) > fabs(usual) ? usual * usual / mean : mean;
 }
 
@@ -228,7 +247,6 @@ static inline float4 judge(const float4* inputs) {
   }
   return (float4)(output_of(a), output_of(b), output_of(c), output_of(d));
 }
-
 
 // The same of the cells of a tile, by what they say `now` and said before, in a tile of such flicker, and by what the
 // tile itself and the 3x3 tiles around say. Whether a cell has become brighter or darker does not matter.
@@ -357,7 +375,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   if (tile.holds_back) {
     tile.rejection = 0.0f;
     UNROLL_LANE(4)
-  for (int c = 0; c < 4; ++c) {
+    for (int c = 0; c < 4; ++c) {
       tile.cells[c] = before.cells[c];
       tile.cells[c].rejection = 0.0f;
     }

@@ -167,8 +167,6 @@ static inline LayerTile layer_tile(const TemporalTileParams* params, DEPTH_TEXEL
 static inline void add_means(TotalLight* sum, const TemporalTileParams* params, TileEvidence tile) {
   const float most = min((float)kLightUnits, 0x1p30f / ((float)params->tiles_x * (float)params->tiles_y));
   const float units = most / max(tile.count, 1.0f);
-  sum->brightening += convert_int(tile.brightening * units);
-  sum->change += convert_int(fabs(tile.brightening) * units);
   sum->light += convert_int(tile.light * units);
   sum->history_error += convert_int(tile.history_error * units);
   sum->neighbour_error += convert_int(tile.neighbour_error * units);
@@ -193,8 +191,6 @@ static inline void add_lag(__global TotalLight* total, const TemporalTileParams*
 
 // Adds the sum of a work-item's tiles to that of the picture.
 static inline void add_to_total(__global TotalLight* total, TotalLight sum) {
-  atomic_add(&total->brightening, sum.brightening);
-  atomic_add(&total->change, sum.change);
   atomic_add(&total->light, sum.light);
   atomic_add(&total->history_error, sum.history_error);
   atomic_add(&total->neighbour_error, sum.neighbour_error);
@@ -213,7 +209,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
 
   const ExposedFrame frame = expose(params.frame, exposure);
   const float change = exposure->change;
-  TotalLight sum = {0, 0, 0, 0, 0, 0, 0, {{0}}};
+  TotalLight sum = {0, 0, 0, 0, 0, {{0}}};
   for (int tile_x = first; tile_x < params.tiles_x; tile_x += (int)get_global_size(0)) {
     const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
     const SampleRange samples = samples_in_tile(&params, corner);

@@ -100,8 +100,6 @@ constexpr int kLagColumns = 4, kLagRows = 3;
 // The evidence of the whole picture: the sums over all tiles of their means, in units of 1 / kLightUnits.
 template <typename Real>
 struct TotalLightOf {
-  Real brightening = 0;
-  Real change = 0;  // |brightening| of each tile
   Real light = 0, history_error = 0, neighbour_error = 0;
   int changed = 0;  // tiles with a history_error above .03 of their light
   std::array<LagTotalOf<Real>, kLagColumns* kLagRows> lags = {};
@@ -174,8 +172,7 @@ TileLightOf<Real> as(const TileLight& l) {
 }
 template <typename Real>
 TotalLightOf<Real> as(const TotalLight& t) {
-  TotalLightOf<Real> made{t.brightening,     t.change,  t.light, t.history_error,
-                          t.neighbour_error, t.changed, {}};
+  TotalLightOf<Real> made{t.light, t.history_error, t.neighbour_error, t.changed, {}};
   for (std::size_t i = 0; i < t.lags.size(); ++i)
     made.lags[i] = {t.lags[i].lag, t.lags[i].lit, t.lags[i].usual_lag, t.lags[i].usual_lit};
   return made;

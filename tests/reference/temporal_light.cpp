@@ -6,13 +6,14 @@
 //   coherent     |B| > .75 sum |brightening|, |relative| > .05, |B| > 3 N / sqrt(n), no motion edge in the nine
 //                tiles, and the samples agree: (sum of b) sign(relative) > .4 n, seven of ten
 //   persistence  p <- .6 p, + .4 sign(relative) if coherent
-//   lag          m = lag / lit, u = usual_lag / usual_lit, each of sums over 3 x 3 of the picture's 4 x 3 parts,
-//                weighted by a quadratic B-spline; if both have the same sign: m min(1, (u / m)^2)
+//   agreement    of sums over some of the picture's 4 x 3 parts: usual_lag / (.005 lit)
+//   lag          m = lag / lit, u = usual_lag / max(usual_lit, .25 d^2 lit), each of sums over 3 x 3 of the parts,
+//                weighted by a quadratic B-spline, d = max(1 - (2 agreement)^2, 0); if both have the same sign:
+//                m min(1, (u / m)^2)
 //   change       t + e min(max(|e| / .02, .2), 1), e = lag - t; the trend of the place, t <- t + .02 e, with e in +-.05
 //   gain         1 + relative if coherent and p sign(relative) > .62, else 1 + change if |change| > .0005, else 1
 //   widespread   more than .2 of all tiles have changed
-//   relit        |sum of brightenings| of the whole picture > .8 its change and > .05 its light,
-//                and widespread
+//   relit        of all parts |agreement| > .8 and |lag / lit| > .05, both with the same sign; and widespread
 //   before       a rigid tile's memory, primed here, is that of the tile, and of the cells, where the middles of it and
 //                of its cells were `step` texels ago, clamped to the picture
 //   flicker      of a cell: f <- .9 f + .1 a, a the smaller |mean| of this frame and of the previous one where
@@ -52,13 +53,16 @@ constexpr double kPersistenceMemory = .6;   // part of persistence that is kept,
 constexpr double kPersistenceMin = .62;     // two coherent frames give .4 + .6 * .4 = .64
 constexpr double kGainMax = 4;              // and 1 / 4 the least
 constexpr double kLagAtOnce = .02;          // part of the light: of less a part is corrected
+constexpr double kUsualLagMax = .005;       // of a tile's light
+constexpr double kLagAgreementMin = .5;     // beyond doubt
+constexpr double kLagDoubt = .25;   // part of the light that at least lags less, where one way is as likely
 constexpr double kLagTiles = 64;    // of no lag beside those of a part, over the fourth power of their number
 constexpr double kLagPartMin = .2;  // each frame
 constexpr double kTrendPart = .02;  // part of the surprise that is learnt, each frame
 constexpr double kTrendSurpriseMax = .05;  // part of the light
 constexpr double kGainChangeMin = .0005;   // part of the light
 constexpr double kLightSumMin = 1e-6;      // against a division by 0
-constexpr double kWholeCoherenceMin = .8;  // coherence of the whole picture
+constexpr double kWholeAgreementMin = .8;  // of the whole picture
 
 // Rejection.
 constexpr double kJudgeErrorFloor = .02;          // added to the neighbours' mean error, the unit of changes
@@ -111,12 +115,28 @@ Sums<Real> sums_around(const LightInputs& in, int x, int y) {
   return sums;
 }
 
+// How far tiles agree about the sign of a lag.
+template <typename Real>
+Real agreement_of(const LagTotalOf<Real>& sum) {
+  return sum.usual_lag / (kUsualLagMax * max(sum.lit, 1));
+}
+
+template <typename Real>
+void add(LagTotalOf<Real>& sum, double weight, const LagTotalOf<Real>& part) {
+  sum.lag += weight * part.lag;
+  sum.lit += weight * part.lit;
+  sum.usual_lag += weight * part.usual_lag;
+  sum.usual_lit += weight * part.usual_lit;
+}
+
 // Whether the whole picture brightens or darkens as one.
 template <typename Real>
 bool is_relit(const TotalLightOf<Real>& total, bool is_widespread) {
-  const Real whole = abs(total.brightening);
-  return is_widespread && whole > kWholeCoherenceMin * total.change &&
-         whole > kRelightChangeMin * total.light;
+  LagTotalOf<Real> sum;
+  for (const LagTotalOf<Real>& part : total.lags)
+    add(sum, 1, part);
+  return is_widespread && sum.lag * sum.usual_lag > 0 && abs(agreement_of(sum)) > kWholeAgreementMin &&
+         abs(sum.lag) > kRelightChangeMin * sum.lit;
 }
 
 // The gain of a coherent change, which persists; 1 without.
@@ -151,11 +171,7 @@ LagTotalOf<Real> lags_around(const LightInputs& in, const TotalLightOf<Real>& to
       const double weight = part_weight(column, (x + .5) * kLagColumns / in.tiles_x) *
                             part_weight(row, (y + .5) * kLagRows / in.tiles_y);
       if (weight == 0) continue;
-      const LagTotalOf<Real>& part = total.lags[index_of(kLagColumns, column, row)];
-      sum.lag += weight * part.lag;
-      sum.lit += weight * part.lit;
-      sum.usual_lag += weight * part.usual_lag;
-      sum.usual_lit += weight * part.usual_lit;
+      add(sum, weight, total.lags[index_of(kLagColumns, column, row)]);
     }
   }
   return sum;
@@ -172,7 +188,9 @@ Real lag_of(const LagTotalOf<Real>& sum, double units) {
   if (!(sum.lag * sum.usual_lag > 0)) return 0;
   const Real tiles = sum.lit / units;
   const Real mean = sum.lag / max(sum.lit, 1);
-  const Real usual = sum.usual_lag / max(sum.usual_lit, units * kLagTiles / (tiles * tiles * tiles * tiles));
+  const Real agreed = agreement_of(sum) / kLagAgreementMin, doubt = max(1 - agreed * agreed, 0);
+  const Real without = max(sum.usual_lit, kLagDoubt * doubt * doubt * sum.lit);
+  const Real usual = sum.usual_lag / max(without, units * kLagTiles / (tiles * tiles * tiles * tiles));
   return abs(mean) > abs(usual) ? usual * usual / mean : mean;
 }
 

@@ -107,17 +107,15 @@ QUINCUNX_CHECK_SIZE(LagTotal, 16);
 enum { kLagColumns = 4, kLagRows = 3, kLagParts = kLagColumns * kLagRows };  // parts of the picture
 
 // The evidence of the whole picture, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are so
-// many that an int would overflow: whether the light has changed everywhere, or the picture is another one.
+// many that an int would overflow: whether the picture is another one. And how far history lags behind, in its parts.
 typedef struct TotalLight {
-  int brightening;  // sum over tiles of their signed means
-  int change;       // sum of the magnitudes of those means
   int light;
   int history_error, neighbour_error;
   int changed;  // how many tiles have a history_error of more than 3 % of their light
   int layered;  // how many tiles are layered: the entries of their list
   LagTotal lags[kLagParts];  // row by row, in units of 1 / kLagUnits or larger
 } TotalLight;
-QUINCUNX_CHECK_SIZE(TotalLight, 28 + 16 * kLagParts);
+QUINCUNX_CHECK_SIZE(TotalLight, 20 + 16 * kLagParts);
 enum { kLightUnits = 2048, kLagUnits = 65536 };
 
 // Units of a tile's light in LagTotal: no sum goes beyond an int, where no lag exceeds LAG_MAX, which is 4.
