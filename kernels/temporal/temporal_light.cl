@@ -89,18 +89,10 @@ static inline float rejection_by_cut(__global const TotalLight* total) {
   return (error - CUT_RATIO_MIN * usual) / (CUT_RATIO_RANGE * usual + 1.0f);
 }
 
-// ---- The broad gain. Sums of LagTotal are float4, as its fields.
+// ---- The broad gain.
 
-static inline float4 load_lags(__global const LagTotal* lags, int part) {
-  return convert_float4(vload4(part, &lags->lag));
-}
-
-// Returns how far tiles agree about a lag, by its sign: 0 if as many lag either way, 1 or more if all lag one way.
-static inline float agreement_of(float4 sum) {
-  return sum.z / (USUAL_LAG_MAX * max(sum.y, 1.0f));
-}
-
-// Whether the whole picture is in another light. A few tiles do not make it so, however much they change.
+// Whether the whole picture is in another light. A few tiles do not make it so, however much they change. Agreement is
+// compared without a division: with one, a work-item would have 255 of a GPU's registers.
 static inline bool is_relit(__global const TotalLight* total) {
   float lag = 0.0f, lit = 0.0f, usual = 0.0f;
   UNROLL(kLagParts)
@@ -126,23 +118,24 @@ static inline float4 lags_around(__global const LagTotal* lags, int tiles_x, int
   const int column = at_x / (2 * tiles_x), row = at_y / (2 * tiles_y);
   const float along_x = (float)(at_x % (2 * tiles_x)) / (float)(2 * tiles_x);
   const float along_y = (float)(at_y % (2 * tiles_y)) / (float)(2 * tiles_y);
-  float4 sum = (float4)(0.0f);
+  float4 sum = (float4)(0.0f);  // as the fields of LagTotal
   for (int j = max(row - 1, 0); j <= min(row + 1, kLagRows - 1); ++j) {
     float4 across = (float4)(0.0f);
     for (int i = max(column - 1, 0); i <= min(column + 1, kLagColumns - 1); ++i)
-      across += part_weight(i - column, along_x) * load_lags(lags, j * kLagColumns + i);
+      across += part_weight(i - column, along_x) * convert_float4(vload4(j * kLagColumns + i, &lags->lag));
     sum += part_weight(j - row, along_y) * across;
   }
   return sum;
 }
 
 // Returns how far history lags behind, in parts of its light. What only some tiles show is a change of its own there:
-// it counts little. So does a lag that few tiles show, or of which they do not agree. `units`: of a tile's light.
+// it counts little. So does a lag that few tiles show, or where they disagree. `units`: of a tile's light.
 static inline float lag_of(float4 sum, float units) {
   if (!(sum.x * sum.z > 0.0f)) return 0.0f;
   const float tiles = sum.y / units, square = tiles * tiles;
   const float mean = sum.x / max(sum.y, 1.0f);
-  const float agreed = agreement_of(sum) / LAG_AGREEMENT_MIN, doubt = max(1.0f - agreed * agreed, 0.0f);
+  const float agreement = sum.z / (USUAL_LAG_MAX * max(sum.y, 1.0f));
+  const float agreed = agreement / LAG_AGREEMENT_MIN, doubt = max(1.0f - agreed * agreed, 0.0f);
   const float without = max(sum.w, LAG_DOUBT * doubt * doubt * sum.y);
   const float usual = sum.z / max(without, units * LAG_TILES / (square * square));
   return fabs(mean) > fabs(usual) ? usual * usual / mean : mean;

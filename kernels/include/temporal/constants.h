@@ -38,8 +38,8 @@
 #define TREND_SURPRISE_MAX 0.05f   // of the light: of more no more is learnt [S]
 #define GAIN_CHANGE_MIN 0.0005f    // of the light: halves hold no less [S]
 #define LAG_LIGHT_FLOOR 0.02f      // luma: added to a tile's light [S]
-#define LAG_AGREEMENT_MIN 0.5f     // of a part's light: so much more lags one way than the other, beyond doubt [S]
-#define LAG_DOUBT 0.25f            // of its light: as much without a lag beside it, where one way is as likely [S]
+#define LAG_AGREEMENT_MIN 0.5f     // agreement of a part's tiles: from here on their lag is beyond doubt [S]
+#define LAG_DOUBT 0.25f            // of a part's light: so much counts as lagging less, where tiles disagree [S]
 #define LAG_TILES 64.0f            // by the 4th power of a part's tiles: so many of no lag beside them [S]
 #define LAG_MAX 4.0f               // of a tile's light [N]
 
@@ -51,7 +51,7 @@
 #define PERSISTENCE_MIN 0.62f         // two frames give .64, one .4 [S]
 #define GAIN_MAX 4.0f                 // factor, either way [S]
 #define WHOLE_CHANGED_TILES_MIN 0.2f  // of all tiles: the rest may be black, or alike [S]
-#define WHOLE_AGREEMENT_MIN 0.8f      // of the picture's light: so much more lags one way than the other [S]
+#define WHOLE_AGREEMENT_MIN 0.8f      // agreement of all tiles of the picture [S]
 #define LIGHT_SUM_MIN 1e-6f           // luma [N]
 
 // ---- temporal_light: rejection by cut. In cuts the ratio is 1.66 or more; textures finer than the samples have as
