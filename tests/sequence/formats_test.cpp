@@ -327,42 +327,6 @@ TEST_F(Formats, AnIccProfileThatIsNotAppliedIsTold) {
   }
 }
 
-TEST_F(Formats, APngSaysByCicpWhatItsCodesAre) {
-  using namespace std::string_literals;
-  struct Case {
-    std::string numbers_and_sum, space, unapplied;
-  };
-  const Case cases[] = {{"\x01\x0d\x00\x01"
-                         "\x9c\x69\x3b\x32"s,
-                         "sRGB", ""},
-                        {"\x01\x08\x00\x01"
-                         "\x9a\xa2\xf9\xd9"s,
-                         "linear", ""},
-                        {"\x0c\x0d\x00\x01"
-                         "\x6e\x03\xe3\xef"s,
-                         "sRGB", "cICP 12/13"},
-                        {"\x09\x10\x00\x01"
-                         "\x4d\x23\x23\xfe"s,
-                         "cICP 9/16", ""},
-                        {"\x01\x0d\x00\x00"
-                         "\xeb\x6e\x0b\xa4"s,
-                         "cICP 1/13 of a narrow range", ""}};
-  const std::string path = folder_.file("f.0001.png");
-  ASSERT_TRUE(tools::write_picture(path, kRender, codes().data()).ok());
-  const std::string plain = read_file(path);
-  constexpr std::size_t kHeader = 8 + 25;  // the signature and IHDR
-  for (const Case& coding : cases) {
-    std::ofstream(path, std::ios::binary)
-        << std::string(plain).insert(kHeader, "\0\0\0\4cICP"s + coding.numbers_and_sum);
-    const tools::ImageReader file = opened(path);
-    const tools::ImagePart& part = file.header().parts[0];
-    EXPECT_EQ(part.colour_space, coding.space);
-    EXPECT_EQ(part.unapplied, coding.unapplied);
-  }
-  expect_refused(fmt::format("'{{}}/f.%04d.png' --out '{{}}/o.%04d.exr' {}", kSame), 1,
-                 "has colour of the space 'cICP 1/13 of a narrow range', which is not known here");
-}
-
 // What the exposures of all programs that changed it have multiplied is taken back.
 TEST_F(Formats, ARadianceFileIsDividedByItsExposures) {
   std::string texels;

@@ -9,6 +9,8 @@
 
 #include "exr_files.h"
 #include "temporary_folder.h"
+#include "tools/image/display_light.h"
+#include "tools/image/image_io.h"
 #include "tools/image/image_reader.h"
 
 namespace quincunx::tools {
@@ -280,6 +282,49 @@ TEST_F(Reading, TruncatedFilesAreRefused) {
     const Status status = reader->read({&target, 1});
     EXPECT_FALSE(status.ok()) << length << " of " << whole.size();
     EXPECT_NE(status.message().find("cut.exr"), std::string::npos);
+  }
+}
+
+TEST(Png, SaysByCicpWhatItsCodesAre) {
+  using namespace std::string_literals;
+  struct Case {
+    std::string numbers_and_sum, space, unapplied;
+    bool is_known = true;
+  };
+  const Case cases[] = {{"\x01\x0d\x00\x01"
+                         "\x9c\x69\x3b\x32"s,
+                         "sRGB", ""},
+                        {"\x01\x08\x00\x01"
+                         "\x9a\xa2\xf9\xd9"s,
+                         "linear", ""},
+                        {"\x0c\x0d\x00\x01"
+                         "\x6e\x03\xe3\xef"s,
+                         "sRGB", "cICP 12/13"},
+                        {"\x09\x10\x00\x01"
+                         "\x4d\x23\x23\xfe"s,
+                         "cICP 9/16", "", false},
+                        {"\x01\x0d\x00\x00"
+                         "\xeb\x6e\x0b\xa4"s,
+                         "cICP 1/13 of a narrow range", "", false}};
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.file("f.png");
+  ASSERT_TRUE(write_picture(path, {4, 3}, std::vector<std::uint8_t>(48, 99).data()).ok());
+  std::ifstream written(path, std::ios::binary);
+  const std::string plain(std::istreambuf_iterator<char>(written), {});
+  constexpr std::size_t kHeader = 8 + 25;  // the signature and IHDR
+  for (const Case& coding : cases) {
+    std::ofstream(path, std::ios::binary)
+        << std::string(plain).insert(kHeader, "\0\0\0\4cICP"s + coding.numbers_and_sum);
+    const auto file = ImageReader::open(path);
+    ASSERT_TRUE(file.ok()) << file.status().message();
+    const ImagePart& part = file.value().header().parts[0];
+    EXPECT_EQ(part.colour_space, coding.space);
+    EXPECT_EQ(part.unapplied, coding.unapplied);
+    const auto colour = InputColour::of(path, part, "");
+    EXPECT_EQ(colour.ok(), coding.is_known) << coding.space;
+    if (!colour.ok()) {
+      EXPECT_NE(colour.status().message().find("not known here; --input-colour takes"), std::string::npos);
+    }
   }
 }
 

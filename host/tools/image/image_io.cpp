@@ -5,10 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -20,6 +24,44 @@
 namespace quincunx::tools {
 
 namespace {
+
+// Adds what a PNG's cICP chunk says of its codes, by numbers of ITU-T H.273. The chunk comes before the pixels,
+// and overrules the others. Source: "Portable Network Graphics (Third Edition)", W3C, 2025.
+void add_png_coding(const std::string& path, ImagePart& part) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<unsigned char, 8> signature{};
+  std::array<unsigned char, 4> length{}, type{}, coding{};
+  const auto take = [&file](auto& bytes) -> bool {
+    return static_cast<bool>(file.read(reinterpret_cast<char*>(bytes.data()), bytes.size()));
+  };
+  const auto is = [&type](std::string_view name) {
+    return std::equal(name.begin(), name.end(), type.begin());
+  };
+  if (!take(signature) ||
+      signature != std::array<unsigned char, 8>{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'})
+    return;
+  while (take(length) && take(type) && !is("cICP")) {
+    if (is("IDAT")) return;
+    const std::uint32_t bytes = std::uint32_t{length[0]} << 24 | length[1] << 16 | length[2] << 8 | length[3];
+    file.seekg(std::streamoff{bytes} + 4, std::ios::cur);
+  }
+  if (!take(coding)) return;
+  constexpr int kRec709 = 1, kLinear = 8, kSrgb = 13;
+  constexpr int kNearlySrgb[] = {1, 6, kSrgb, 14, 15};
+  const int primaries = coding[0], transfer = coding[1];
+  const bool full = coding[3] != 0;
+  const std::string name = fmt::format("cICP {}/{}{}", primaries, transfer, full ? "" : " of a narrow range");
+  part.unapplied.clear();
+  if (full && primaries == kRec709 && (transfer == kSrgb || transfer == kLinear)) {
+    part.colour_space = transfer == kSrgb ? "sRGB" : "linear";
+  } else if (full &&
+             std::find(std::begin(kNearlySrgb), std::end(kNearlySrgb), transfer) != std::end(kNearlySrgb)) {
+    part.colour_space = "sRGB";
+    part.unapplied = name;
+  } else {
+    part.colour_space = name;
+  }
+}
 
 // Libraries' messages may run over several lines; one sentence is enough.
 Status cannot_read(const std::string& path, std::string reason) {
@@ -280,6 +322,7 @@ Result<ImageReader> ImageReader::open(const std::string& path) {
     ImageReader reader(path);
     reader.file_ = backend::ImageFile::open(path);
     for (ImagePart& part : reader.file_->header.parts) {
+      add_png_coding(path, part);
       std::sort(part.channels.begin(), part.channels.end(),
                 [](const HeaderChannel& a, const HeaderChannel& b) { return order_of(a) < order_of(b); });
     }

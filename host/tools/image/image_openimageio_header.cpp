@@ -156,41 +156,6 @@ void add_radiance_lines(const std::string& path, ImagePart& part) {
   }
 }
 
-// Adds what a PNG's cICP chunk says of its codes, by numbers of ITU-T H.273. The chunk comes before the pixels,
-// and overrules the others. Source: "Portable Network Graphics (Third Edition)", W3C, 2025.
-void add_png_coding(const std::string& path, ImagePart& part) {
-  std::ifstream file(path, std::ios::binary);
-  file.seekg(8);
-  std::array<unsigned char, 4> length{}, type{}, coding{};
-  const auto take = [&file](auto& bytes) -> bool {
-    return static_cast<bool>(file.read(reinterpret_cast<char*>(bytes.data()), bytes.size()));
-  };
-  const auto is = [&type](std::string_view name) {
-    return std::equal(name.begin(), name.end(), type.begin());
-  };
-  while (take(length) && take(type) && !is("cICP")) {
-    if (is("IDAT")) return;
-    const std::uint32_t bytes = std::uint32_t{length[0]} << 24 | length[1] << 16 | length[2] << 8 | length[3];
-    file.seekg(std::streamoff{bytes} + 4, std::ios::cur);
-  }
-  if (!take(coding)) return;
-  constexpr int kRec709 = 1, kLinear = 8, kSrgb = 13;
-  constexpr int kNearlySrgb[] = {1, 6, kSrgb, 14, 15};
-  const int primaries = coding[0], transfer = coding[1];
-  const bool full = coding[3] != 0;
-  const std::string name = fmt::format("cICP {}/{}{}", primaries, transfer, full ? "" : " of a narrow range");
-  part.unapplied.clear();
-  if (full && primaries == kRec709 && (transfer == kSrgb || transfer == kLinear)) {
-    part.colour_space = transfer == kSrgb ? "sRGB" : "linear";
-  } else if (full &&
-             std::find(std::begin(kNearlySrgb), std::end(kNearlySrgb), transfer) != std::end(kNearlySrgb)) {
-    part.colour_space = "sRGB";
-    part.unapplied = name;
-  } else {
-    part.colour_space = name;
-  }
-}
-
 }  // namespace
 
 ImagePart describe(const OIIO::ImageSpec& spec, const std::string& format, const std::string& path) {
@@ -220,7 +185,6 @@ ImagePart describe(const OIIO::ImageSpec& spec, const std::string& format, const
   if (const auto* found = spec.find_attribute("chromaticities", kChromaticitiesType))
     part.chromaticities = copied<Chromaticities>(*found);
   if (format == "hdr") add_radiance_lines(path, part);
-  if (format == "png") add_png_coding(path, part);
   for (int c = 0; c < spec.nchannels; ++c) {
     const Base type = Base(spec.channelformat(c).basetype);
     part.channels.push_back({.name = spec.channel_name(c),
