@@ -21,16 +21,20 @@ static inline bool find_cell(const LayerParams* params, float2 place, int* cell)
 __kernel void advect_records(const LayerParams params, __global const uint* previous_keys,
                              __global const LayerRecord* previous_records, __global uint* keys) {
   const int y = get_global_id(1);
-  const ItemColumns item = columns_of_item(params.columns_per_item, params.previous_width, 1);
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.previous_width, kLanes);
   if (item.first >= item.end || y >= params.previous_height) return;
 
-  for (int x = item.first; x < item.end; x += item.step) {
-    const int i = y * params.previous_width + x;
-    const uint key = previous_keys[i];
-    LayerRecord record;
-    int cell;
-    if (!carry_over(key, previous_records + i, &record)) continue;
-    if (find_cell(&params, (float2)(record.x, record.y), &cell))
-      atomic_max(keys + cell, record_key(record_age(key) + 1, i));
+  for (int start = item.first; start < item.end; start += item.step) {
+    const int count = min((int)kLanes, pixels_from(item, start));
+    if (!any_record(previous_keys + y * params.previous_width + start, count)) continue;
+    for (int x = start; x < start + count; ++x) {
+      const int i = y * params.previous_width + x;
+      const uint key = previous_keys[i];
+      LayerRecord record;
+      int cell;
+      if (!carry_over(key, previous_records + i, &record)) continue;
+      if (find_cell(&params, (float2)(record.x, record.y), &cell))
+        atomic_max(keys + cell, record_key(record_age(key) + 1, i));
+    }
   }
 }

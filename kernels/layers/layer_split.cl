@@ -33,17 +33,20 @@ static inline LayerRecord record_of(uint key, int cell, __global const LayerReco
 // Whether a cell within reach of the samples from (x, y) on has a record.
 static inline bool has_record_near(const LayerParams* params, __global const uint* keys, int x, int y) {
   const int left = max(x - kReach, 0), right = min(x + kWindow + kReach, params->width);
-  uint any = 0;
-  for (int row = max(y - kReach, 0); row <= min(y + kReach, params->height - 1); ++row) {
-    __global const uint* line = keys + row * params->width;
-    if (LANES == 8 && right - left == kWindow + 2 * kReach) {
-      const uint8 start = vload8(0, line + left);
-      const uint4 rest = vload4(0, line + left + 8);
-      const uint4 both = start.lo | start.hi | rest;
-      any |= both.x | both.y | both.z | both.w;
-    } else {
-      for (int column = left; column < right; ++column) any |= line[column];
+  const int first = max(y - kReach, 0), last = min(y + kReach, params->height - 1);
+#if LANES == 8
+  if (right - left == kWindow + 2 * kReach) {
+    uint8 any = 0;
+    for (int row = first; row <= last; ++row) {
+      __global const uint* line = keys + row * params->width + left;
+      any |= vload8(0, line) | vload8(0, line + 2 * kReach);
     }
+    return any_of_eight(as_int8(any));
+  }
+#endif
+  uint any = 0;
+  for (int row = first; row <= last; ++row) {
+    for (int column = left; column < right; ++column) any |= keys[row * params->width + column];
   }
   return any != 0;
 }
@@ -143,15 +146,18 @@ __kernel void layer_split(const LayerParams params, VELOCITY_TEXELS velocity, DE
   const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kWindow);
   if (item.first >= item.end || y >= params.height) return;
 
+  const LayerSplit none = {0.0f, 0.0f, 0.0f, 0.0f};
   for (int start = item.first; start < item.end; start += item.step) {
     const int stop = start + min((int)kWindow, pixels_from(item, start));
-    NearestRecords nearest;
-    const bool any = has_record_near(&params, keys, start, y);
-    if (any) nearest = find_records(&params, keys, previous_records, start, y);
+    if (!has_record_near(&params, keys, start, y)) {
+      for (int x = start; x < stop; ++x) splits[y * params.width + x] = none;
+      continue;
+    }
+    const NearestRecords nearest = find_records(&params, keys, previous_records, start, y);
     for (int x = start; x < stop; ++x) {
       const int i = y * params.width + x;
-      const int cell = any ? nearest.cell[x - start] : -1;
-      LayerSplit split = {0.0f, 0.0f, 0.0f, 0.0f};
+      const int cell = nearest.cell[x - start];
+      LayerSplit split = none;
       if (cell >= 0) {
         const LayerRecord record = record_of(keys[cell], cell, previous_records, records);
         const float2 motion = (float2)(record.motion_x, record.motion_y);

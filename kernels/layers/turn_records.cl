@@ -45,22 +45,26 @@ static inline bool moves_otherwise(LayerRecord record, LayerRecord now) {
 __kernel void turn_records(const LayerParams params, __global const uint* previous_keys, __global const uint* keys,
                            __global const LayerRecord* records, __global LayerRecord* previous_records) {
   const int y = get_global_id(1);
-  const ItemColumns item = columns_of_item(params.columns_per_item, params.previous_width, 1);
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.previous_width, kLanes);
   if (item.first >= item.end || y >= params.previous_height) return;
 
-  for (int x = item.first; x < item.end; x += item.step) {
-    const int i = y * params.previous_width + x;
-    const uint key = previous_keys[i];
-    LayerRecord record;
-    if (!carry_over(key, previous_records + i, &record)) continue;
-    const int cell = find_new(&params, keys, records, record);
-    if (cell < 0 || !moves_otherwise(record, records[cell])) continue;
-    if (record_age(key) != 0) {
-      previous_records[i].is_thin = 0;
-      continue;
+  for (int start = item.first; start < item.end; start += item.step) {
+    const int count = min((int)kLanes, pixels_from(item, start));
+    if (!any_record(previous_keys + y * params.previous_width + start, count)) continue;
+    for (int x = start; x < start + count; ++x) {
+      const int i = y * params.previous_width + x;
+      const uint key = previous_keys[i];
+      LayerRecord record;
+      if (!carry_over(key, previous_records + i, &record)) continue;
+      const int cell = find_new(&params, keys, records, record);
+      if (cell < 0 || !moves_otherwise(record, records[cell])) continue;
+      if (record_age(key) != 0) {
+        previous_records[i].is_thin = 0;
+        continue;
+      }
+      previous_records[i].motion_x = records[cell].motion_x;
+      previous_records[i].motion_y = records[cell].motion_y;
+      previous_records[i].drift_x = previous_records[i].drift_y = 0.0f;
     }
-    previous_records[i].motion_x = records[cell].motion_x;
-    previous_records[i].motion_y = records[cell].motion_y;
-    previous_records[i].drift_x = previous_records[i].drift_y = 0.0f;
   }
 }
