@@ -26,14 +26,14 @@ using Names = std::string_view[];
 constexpr Names kStill = {"still"};
 constexpr Names kPan = {"pan"};
 constexpr Names kObjects = {"occluders", "wheel"};
-constexpr Names kThin = {"wires"};
+constexpr Names kThin = {"wires", "cables"};
 constexpr Names kLight = {"shadows", "sparkles"};
 constexpr Names kZoom = {"zoom"};
 
 constexpr Names kHeldStill = {"chart"};
 constexpr Names kHeldPan = {"backdrop", "cut"};
 constexpr Names kHeldObjects = {"courtyard", "cutout"};
-constexpr Names kHeldThin = {"cables", "fence"};
+constexpr Names kHeldThin = {"fence"};
 constexpr Names kHeldLight = {"particles"};
 constexpr Names kHeldZoom = {"flight"};
 
