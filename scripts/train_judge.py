@@ -252,8 +252,8 @@ def force(path, text, count, rejection):
             ("return judge(inputs);", "return judge(inputs, cells);"),
             ("const TileEvidence* tile, const TileEvidence* tiles) {",
              "const TileEvidence* tile, const TileEvidence* tiles, int4 cells) {"),
-            ("&own, &around.sum);",
-             "&own, &around.sum, select((int4)(-1), 2 * (y * %d + x) + (int4)(0, 1, %d, %d), asked & -(int)forced));"
+            ("own, &around.sum);",
+             "own, &around.sum, select((int4)(-1), 2 * (y * %d + x) + (int4)(0, 1, %d, %d), asked & -(int)forced));"
              % (SIZE[0] // CELL, SIZE[0] // CELL, SIZE[0] // CELL + 1)),
             ("const TileLight before = remember(previous, tiles[i], tiles_x, tiles_y, x, y);",
              "TileLight before = remember(previous, tiles[i], tiles_x, tiles_y, x, y);\n"
