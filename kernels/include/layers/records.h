@@ -91,13 +91,13 @@ static inline int record_index(uint key) {
   return (int)(0x0fffffffu - (key & 0x0fffffffu));
 }
 
-// Whether one of the first `count` of the lanes' cells has a record.
+// Whether one of `count` cells, at most one a lane, has a record.
 static inline bool any_record(__global const uint* keys, int count) {
 #if LANES == 8
-  if (count >= kLanes) return any_of_eight(as_int8(vload8(0, keys)));
+  if (count == kLanes) return any_of_eight(as_int8(vload8(0, keys)));
 #endif
   uint any = 0;
-  for (int i = 0; i < min(count, (int)kLanes); ++i) any |= keys[i];
+  for (int i = 0; i < count; ++i) any |= keys[i];
   return any != 0;
 }
 
