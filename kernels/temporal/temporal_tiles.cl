@@ -173,20 +173,39 @@ static inline void add_means(TotalLight* sum, const TemporalTileParams* params, 
   sum->changed += tile.history_error > CHANGED_TILE_ERROR_MIN * tile.light;
 }
 
+// How far history lags behind in tiles of one part of the picture, which a work-item adds to the total at once.
+typedef struct PartLag {
+  int part;  // -1: none yet
+  LagTotal sum;
+} PartLag;
+
+static inline void flush_lag(__global TotalLight* total, PartLag lag) {
+  if (lag.part < 0) return;
+  __global LagTotal* part = &total->lags[lag.part];
+  atomic_add(&part->lag, lag.sum.lag);
+  atomic_add(&part->lit, lag.sum.lit);
+  atomic_add(&part->usual_lag, lag.sum.usual_lag);
+  atomic_add(&part->usual_lit, lag.sum.usual_lit);
+}
+
 // Adds how far history lags behind in tile (x, y).
-static inline void add_lag(__global TotalLight* total, const TemporalTileParams* params, TileEvidence tile, int x,
-                           int y) {
+static inline void add_lag(PartLag* sum, __global TotalLight* total, const TemporalTileParams* params,
+                           TileEvidence tile, int x, int y) {
   if (!(tile.count > 0.0f)) return;
-  const int column = x * kLagColumns / params->tiles_x, row = y * kLagRows / params->tiles_y;
+  const int part = y * kLagRows / params->tiles_y * kLagColumns + x * kLagColumns / params->tiles_x;
+  if (part != sum->part) {
+    flush_lag(total, *sum);
+    const PartLag none = {part, {0, 0, 0, 0}};
+    *sum = none;
+  }
   const float units = lag_units(params->tiles_x, params->tiles_y);
   const float light = tile.lit + LAG_LIGHT_FLOOR * tile.count;
   const float lag = clamp(tile.lag / light, -LAG_MAX, LAG_MAX);
   const int lit = convert_int(units * tile.lit / light);
-  __global LagTotal* part = &total->lags[row * kLagColumns + column];
-  atomic_add(&part->lag, convert_int(units * lag));
-  atomic_add(&part->lit, lit);
-  atomic_add(&part->usual_lag, convert_int(units * clamp(lag, -USUAL_LAG_MAX, USUAL_LAG_MAX)));
-  if (fabs(lag) < USUAL_LAG_MAX) atomic_add(&part->usual_lit, lit);
+  sum->sum.lag += convert_int(units * lag);
+  sum->sum.lit += lit;
+  sum->sum.usual_lag += convert_int(units * clamp(lag, -USUAL_LAG_MAX, USUAL_LAG_MAX));
+  if (fabs(lag) < USUAL_LAG_MAX) sum->sum.usual_lit += lit;
 }
 
 // Adds the sum of a work-item's tiles to that of the picture.
@@ -210,33 +229,43 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
   const ExposedFrame frame = expose(params.frame, exposure);
   const float change = exposure->change;
   TotalLight sum = {0, 0, 0, 0, 0, {{0}}};
-  for (int tile_x = first; tile_x < params.tiles_x; tile_x += (int)get_global_size(0)) {
-    const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
-    const SampleRange samples = samples_in_tile(&params, corner);
+  PartLag lag = {-1, {0, 0, 0, 0}};
+  const Past past = {reprojection, {history, params.output_width, params.output_height}, previous_tiles, splits, change};
+  for (int left = first * kTilesAtOnce; left < params.tiles_x; left += (int)get_global_size(0) * kTilesAtOnce) {
+    JudgedTile found[kTilesAtOnce];
+    int2 rows = (int2)(0, -1);
+    for (int side = 0; side < kTilesAtOnce; ++side) {
+      const JudgedTile none = {(int2)(0, -1), false, {.is_rigid = 1, .is_trusted = 1}, no_evidence()};
+      JudgedTile* tile = &found[side];
+      *tile = none;
+      const int tile_x = left + side, i = tile_y * params.tiles_x + tile_x;
+      if (tile_x >= params.tiles_x) continue;
+      const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
+      const SampleRange samples = samples_in_tile(&params, corner);
+      bool hidden = false;
 #if MOTION
-    const ReprojectionRange found = range_of(reprojection, params.reprojection, widened(&params, samples));
-    TileReprojection tile = reproject_tile(&params, found, previous_tiles, corner);
-#else
-    const TileReprojection tile = {.is_rigid = 1, .is_trusted = 1};
+      const ReprojectionRange range = range_of(reprojection, params.reprojection, widened(&params, samples));
+      tile->reprojection = reproject_tile(&params, range, previous_tiles, corner);
 #endif
-    const int i = tile_y * params.tiles_x + tile_x;
-    bool hidden = false, is_split = false;
 #if LAYERS
-    const LayerInputs in = {depth_layout, splits, marks, previous_layers};
-    const LayerTile own = layer_tile(&params, depth, &in, samples, found, (int2)(tile_x, tile_y), corner,
-                                     previous_tiles, &tile, &hidden);
-    layers[i] = own;
-    if (own.is_layered) listed[atomic_inc(&total->layered)] = i;
-    is_split = own.is_split;
+      const LayerInputs in = {depth_layout, splits, marks, previous_layers};
+      const LayerTile own = layer_tile(&params, depth, &in, samples, range, (int2)(tile_x, tile_y), corner,
+                                       previous_tiles, &tile->reprojection, &hidden);
+      layers[i] = own;
+      if (own.is_layered) listed[atomic_inc(&total->layered)] = i;
+      tile->is_split = own.is_split;
 #endif
-    const HistoryLayer known = {history, params.output_width, params.output_height};
-    const Past past = {reprojection, known, previous_tiles, is_split ? splits : 0, change};
-    TileEvidence found_evidence = no_evidence();
-    if (!hidden) found_evidence = judge_history(colour, &frame, depth, depth_layout, &past, &params, tile, samples);
-    add_means(&sum, &params, found_evidence);
-    add_lag(total, &params, found_evidence, tile_x, tile_y);
-    tiles[i] = tile;
-    evidence[i] = found_evidence;
+      tiles[i] = tile->reprojection;
+      rows = (int2)(samples.first.y, samples.last.y);
+      if (!hidden) tile->columns = (int2)(samples.first.x, samples.last.x);
+    }
+    judge_tiles(found, colour, &frame, depth, depth_layout, &past, &params, rows);
+    for (int side = 0; side < kTilesAtOnce && left + side < params.tiles_x; ++side) {
+      add_means(&sum, &params, found[side].evidence);
+      add_lag(&lag, total, &params, found[side].evidence, left + side, tile_y);
+      evidence[tile_y * params.tiles_x + left + side] = found[side].evidence;
+    }
   }
+  flush_lag(total, lag);
   add_to_total(total, sum);
 }

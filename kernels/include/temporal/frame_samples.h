@@ -63,9 +63,11 @@ static inline float4 sample_at(COLOUR_TEXELS texels, const ExposedFrame* frame, 
   return held_sample((float4)(sample.xyz * frame->exposure, sample.w));
 }
 
-static inline void load_next_sample(COLOUR_TEXELS texels, TexelLayout layout, LaneInt* x, int y, LaneTexels* samples) {
-  *samples = push_texel(*samples, load_colour(texels, layout, FIRST_LANE(*x), y));
+static inline void load_next_sample(COLOUR_TEXELS texels, TexelLayout layout, LaneInt* x, LaneInt* y,
+                                    LaneTexels* samples) {
+  *samples = push_texel(*samples, load_colour(texels, layout, FIRST_LANE(*x), FIRST_LANE(*y)));
   *x = NEXT_LANES(*x);
+  *y = NEXT_LANES(*y);
 }
 
 // Alpha stays.
@@ -79,15 +81,24 @@ static inline LaneTexels exposed(LaneTexels texels, float exposure) {
 #endif
 }
 
-// Loads the samples of a row nearest to the pixels, of any brightness.
-static inline LaneTexels load_samples(COLOUR_TEXELS texels, const ExposedFrame* frame, LaneInt x, int y) {
+// Loads samples of any brightness.
+static inline LaneTexels load_samples_at(COLOUR_TEXELS texels, const ExposedFrame* frame, LaneInt x, LaneInt y) {
   LaneTexels samples = no_texels();
 #if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF && LANES == 8
-  samples = gather_half_texels((__global const ulong*)texels + row_index(frame->colour, y), x);
+  samples = gather_half_texels((__global const ulong*)texels + frame->colour.offset, y * frame->colour.pitch + x);
 #else
-  EACH_LANE(load_next_sample(texels, frame->colour, &x, y, &samples));
+  EACH_LANE(load_next_sample(texels, frame->colour, &x, &y, &samples));
 #endif
   return exposed(samples, frame->exposure);
+}
+
+// The same of one row.
+static inline LaneTexels load_samples(COLOUR_TEXELS texels, const ExposedFrame* frame, LaneInt x, int y) {
+#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF && LANES == 8
+  return exposed(gather_half_texels((__global const ulong*)texels + row_index(frame->colour, y), x), frame->exposure);
+#else
+  return load_samples_at(texels, frame, x, (LaneInt)(y));
+#endif
 }
 
 // Returns false only if none is brighter than 2 or invalid, so that their luma weights are all 1.

@@ -18,7 +18,7 @@
 #define LAYERS 0
 #endif
 
-enum { kJudgedAtOnce = LANES == 8 ? kLanes - 2 : 1 };  // samples of a row
+enum { kTilesAtOnce = LANES == 8 ? 2 : 1 };  // side by side
 
 enum { kHistoryAhead = 4 * kTemporalTile, kColourAhead = 16 };  // texels of history and samples to prefetch
 
@@ -27,9 +27,17 @@ typedef struct Past {
   __global const float* reprojection;
   HistoryLayer history;
   __global const TileReprojection* previous_tiles;
-  __global const LayerSplit* splits;  // one for each sample of a split tile, else null
+  __global const LayerSplit* splits;  // one for each sample
   float change;                       // Exposure's
 } Past;
+
+// A tile whose samples are judged.
+typedef struct JudgedTile {
+  int2 columns;  // of its samples, first and last; none is judged if first > last
+  bool is_split;
+  TileReprojection reprojection;
+  TileEvidence evidence;
+} JudgedTile;
 
 // ---- Where samples are in history.
 
@@ -57,18 +65,44 @@ static inline void follow_next_motion(const Past* past, const TemporalTileParams
 }
 #endif
 
+// How samples get to history.
+typedef struct WayBack {
+  LaneFloat step_x, step_y;  // of those of rigid tiles, output pixels; else 0
+  LaneMask is_rigid, is_trusted;
+  bool all_rigid, all_trusted;
+  bool any_split;
+} WayBack;
+
+static inline WayBack way_back(const JudgedTile* tile) {
+  const TileReprojection own = tile->reprojection;
+  const WayBack way = {own.is_rigid ? own.phase_x + (float)own.step_x : 0.0f,
+                       own.is_rigid ? own.phase_y + (float)own.step_y : 0.0f,
+                       mask_of(own.is_rigid),
+                       mask_of(own.is_trusted),
+                       own.is_rigid,
+                       own.is_trusted,
+                       tile->is_split};
+  return way;
+}
+
 // Moves samples of row y to their places in the previous history, output pixels. Returns which are trusted.
-static inline LaneMask find_in_history(const Past* past, const TemporalTileParams* params, TileReprojection tile,
+static inline LaneMask find_in_history(const Past* past, const TemporalTileParams* params, const WayBack* way,
                                        LaneInt columns, int y, LaneFloat* at_x, LaneFloat* at_y) {
   LaneFloat trust = 1.0f;
-  if (tile.is_rigid) {
-    *at_x -= tile.phase_x + (float)tile.step_x;
-    *at_y -= tile.phase_y + (float)tile.step_y;
-  }
 #if MOTION
-  if (!tile.is_trusted) EACH_LANE(load_next_trust(past, params, &columns, y, &trust));
-  if (!tile.is_rigid) EACH_LANE(follow_next_motion(past, params, &columns, y, at_x, at_y));
+  if (!way->all_trusted) {
+    EACH_LANE(load_next_trust(past, params, &columns, y, &trust));
+    trust = select(trust, (LaneFloat)(1.0f), way->is_trusted);
+  }
+  if (!way->all_rigid) {
+    LaneFloat moved_x = *at_x, moved_y = *at_y;
+    EACH_LANE(follow_next_motion(past, params, &columns, y, &moved_x, &moved_y));
+    *at_x = select(moved_x, *at_x, way->is_rigid);
+    *at_y = select(moved_y, *at_y, way->is_rigid);
+  }
 #endif
+  *at_x -= way->step_x;
+  *at_y -= way->step_y;
   return trust > JUDGING_TRUST_MIN;
 }
 
@@ -90,15 +124,15 @@ static inline LaneMask are_of_far_layer(const Past* past, DEPTH_TEXELS depth, Te
 
 // Returns which samples of row y, at these places, may judge history, and the index of the texel of each.
 static inline LaneMask find_judged(const Past* past, DEPTH_TEXELS depth, TexelLayout depth_layout,
-                                   const TemporalTileParams* params, TileReprojection tile, LaneInt columns, int y,
+                                   const TemporalTileParams* params, const WayBack* way, LaneInt columns, int y,
                                    LaneFloat place_x, float place_y, LaneInt* index) {
   const int width = params->output_width, height = params->output_height;
   LaneFloat at_x = place_x, at_y = place_y;
-  LaneMask judged = find_in_history(past, params, tile, columns, y, &at_x, &at_y);
+  LaneMask judged = find_in_history(past, params, way, columns, y, &at_x, &at_y);
   judged &= (at_x >= 0.0f) & (at_y >= 0.0f) & (at_x < (float)width) & (at_y < (float)height);
   if (params->parity >= 0) judged &= ((columns + y) & 1) == params->parity;
 #if LAYERS
-  if (past->splits != 0) judged &= are_of_far_layer(past, depth, depth_layout, params, columns, y);
+  if (way->any_split) judged &= are_of_far_layer(past, depth, depth_layout, params, columns, y);
 #endif
   *index = select((LaneInt)(0), to_lane_int(at_y) * width + to_lane_int(at_x), judged);
   return judged;
@@ -153,28 +187,34 @@ typedef struct RowsEvidence {
   LaneFloat outliers;
 } RowsEvidence;
 
-// The lane on the left of each; meaningless in the outermost one, as in from_right().
-static inline SampleLanes from_left(const SampleLanes* row) {
-  const SampleLanes moved = {row->luma.s70123456, row->brightest.s70123456, row->darkest.s70123456,
-                             row->valid.s70123456};
+// The samples on the left of the lanes; `beside` has that of the outermost one in its lane 0.
+static inline SampleLanes from_left(const SampleLanes* row, const SampleLanes* beside) {
+  const SampleLanes moved = {(LaneFloat)(beside->luma.s0, row->luma.s0123, row->luma.s456),
+                             (LaneFloat)(beside->brightest.s0, row->brightest.s0123, row->brightest.s456),
+                             (LaneFloat)(beside->darkest.s0, row->darkest.s0123, row->darkest.s456),
+                             (LaneMask)(beside->valid.s0, row->valid.s0123, row->valid.s456)};
   return moved;
 }
 
-static inline SampleLanes from_right(const SampleLanes* row) {
-  const SampleLanes moved = {NEXT_LANES(row->luma), NEXT_LANES(row->brightest), NEXT_LANES(row->darkest),
-                             NEXT_LANES(row->valid)};
+// The same on the right; that of the outermost one is in lane 1.
+static inline SampleLanes from_right(const SampleLanes* row, const SampleLanes* beside) {
+  const SampleLanes moved = {(LaneFloat)(row->luma.s1234, row->luma.s567, beside->luma.s1),
+                             (LaneFloat)(row->brightest.s1234, row->brightest.s567, beside->brightest.s1),
+                             (LaneFloat)(row->darkest.s1234, row->darkest.s567, beside->darkest.s1),
+                             (LaneMask)(row->valid.s1234, row->valid.s567, beside->valid.s1)};
   return moved;
 }
 
-// Returns the neighbours that are shaded: on a checkerboard the diagonal ones.
+// Returns the neighbours that are shaded: on a checkerboard the diagonal ones, but not of the outermost lanes.
 static inline Neighbours neighbours_of(const SampleLanes* above, const SampleLanes* own, const SampleLanes* below,
-                                       bool is_checkerboard) {
+                                       const SampleLanes* beside, bool is_checkerboard) {
   if (is_checkerboard) {
-    const Neighbours diagonal = {from_left(above), from_right(above), from_left(below), from_right(below)};
+    const Neighbours diagonal = {from_left(above, beside), from_right(above, beside), from_left(below, beside),
+                                 from_right(below, beside)};
     return diagonal;
   }
-  const Neighbours beside = {from_left(own), from_right(own), *above, *below};
-  return beside;
+  const Neighbours next = {from_left(own, beside), from_right(own, beside), *above, *below};
+  return next;
 }
 
 // Loads the samples of row y from column x on; `columns` are the same, and both are clamped to the viewport.
@@ -184,6 +224,24 @@ static inline SampleLanes load_row(COLOUR_TEXELS colour, const ExposedFrame* fra
   COLOUR_ROW from = colour_row(colour, frame->colour, row);
   const LaneTexels texels = {load_colour4(colour, from, x), load_colour4(colour, from, x + 4)};
   return compare_lanes(exposed(texels, frame->exposure));
+}
+
+// The rows whose outermost neighbours are loaded together.
+enum { kRowsBeside = kLanes / 2 };
+
+// Loads the samples beside the lanes from column x on, of kRowsBeside rows: on the left in even lanes, on the right in
+// odd ones.
+static inline SampleLanes load_beside(COLOUR_TEXELS colour, const ExposedFrame* frame, int x, int y) {
+  const LaneInt columns = x - 1 + (LANE_NUMBERS & 1) * (kLanes + 1), rows = y + LANE_NUMBERS / 2;
+  return compare_lanes(load_samples_at(colour, frame, clamp(columns, (LaneInt)(0), (LaneInt)(frame->width - 1)),
+                                       min(rows, (LaneInt)(frame->height - 1))));
+}
+
+// Those of the next row.
+static inline SampleLanes next_beside(const SampleLanes* beside) {
+  const SampleLanes next = {beside->luma.s23456701, beside->brightest.s23456701, beside->darkest.s23456701,
+                            beside->valid.s23456701};
+  return next;
 }
 
 // Adds what the samples of a row say.
@@ -228,20 +286,20 @@ static inline float8 sum_lanes(float8 a, float8 b, float8 c, float8 d, float8 e,
   return (float8)(abcd.even + abcd.odd, efgh.even + efgh.odd);
 }
 
-// Adds rows whose lanes at `left` lie in the left cells.
-static inline void add_rows(TileEvidence* tile, const RowsEvidence* rows, LaneMask left) {
+// Adds rows whose lanes lie in the tile's left cells or its right ones, or elsewhere.
+static inline void add_rows(TileEvidence* tile, const RowsEvidence* rows, LaneMask left, LaneMask right) {
   const LaneEvidence *upper = &rows->upper, *lower = &rows->lower;
-  const LaneMask right = mask_not(left);
+  const LaneMask all = left | right;
   const LaneFloat changes =
       sum_lanes(where(left, upper->brightening), where(right, upper->brightening), where(left, lower->brightening),
-                where(right, lower->brightening), upper->light + lower->light,
-                upper->history_error + lower->history_error, upper->neighbour_error + lower->neighbour_error,
-                rows->outliers);
+                where(right, lower->brightening), where(all, upper->light + lower->light),
+                where(all, upper->history_error + lower->history_error),
+                where(all, upper->neighbour_error + lower->neighbour_error), where(all, rows->outliers));
   const LaneFloat counts = sum_lanes(where(left, upper->brighter), where(right, upper->brighter),
                                   where(left, lower->brighter), where(right, lower->brighter),
                                   where(left, upper->count), where(right, upper->count),
                                   where(left, lower->count), where(right, lower->count));
-  const LaneFloat lag = upper->lag + lower->lag, lit = upper->lit + lower->lit;
+  const LaneFloat lag = where(all, upper->lag + lower->lag), lit = where(all, upper->lit + lower->lit);
   const float8 two = sum_lanes(lag, lit, lag, lit, lag, lit, lag, lit);
   tile->lag += two.s0;
   tile->lit += two.s1;
@@ -258,48 +316,92 @@ static inline void add_rows(TileEvidence* tile, const RowsEvidence* rows, LaneMa
   tile->outliers += changes.s7;
 }
 
-// Adds what the tile's samples in at most kJudgedAtOnce columns from `first` on say.
-static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, const ExposedFrame* frame,
+// How samples of two tiles get to history: those at `right` as the second tile's.
+static inline WayBack way_back_of_two(const JudgedTile* tiles, LaneMask right) {
+  const WayBack a = way_back(tiles), b = way_back(tiles + 1);
+  const WayBack way = {select(a.step_x, b.step_x, right),         select(a.step_y, b.step_y, right),
+                       select(a.is_rigid, b.is_rigid, right),     select(a.is_trusted, b.is_trusted, right),
+                       a.all_rigid && b.all_rigid,                a.all_trusted && b.all_trusted,
+                       a.any_split || b.any_split};
+  return way;
+}
+
+static inline LaneMask are_between(LaneInt columns, int2 range) {
+  return (columns >= range.x) & (columns <= range.y);
+}
+
+// Adds what two tiles' samples in columns from `first` on say, as far as they lie in those of `left` and of `right`: in
+// kLanes of them if it loads the samples beside those, else in two less.
+static inline void judge_columns(JudgedTile* tiles, COLOUR_TEXELS colour, const ExposedFrame* frame,
                                  DEPTH_TEXELS depth, TexelLayout depth_layout, const Past* past,
-                                 const TemporalTileParams* params, TileReprojection tile, SampleRange samples,
-                                 int first) {
-  const int x = first - 1;  // the left neighbour
-  const LaneInt columns = clamp(x + LANE_NUMBERS, (LaneInt)(0), (LaneInt)(frame->width - 1));
-  const LaneMask middle = (LANE_NUMBERS >= 1) & (LANE_NUMBERS <= min(samples.last.x - x, (int)kJudgedAtOnce));
-  const LaneFloat place_x = to_lane_float(x + LANE_NUMBERS) * params->spacing_x + params->start_x;
+                                 const TemporalTileParams* params, int2 rows, int2 left, int2 right, int first,
+                                 bool loads_beside) {
+  const int margin = loads_beside ? 0 : 1;
+  const int x = first - margin;
+  const LaneInt all_columns = x + LANE_NUMBERS;
+  const LaneMask middle = (LANE_NUMBERS >= margin) & (LANE_NUMBERS < kLanes - margin);
+  const LaneMask of_left = middle & are_between(all_columns, left);
+  const LaneMask of_right = middle & are_between(all_columns, right);
+  const WayBack way = way_back_of_two(tiles, of_right);
+  const LaneInt columns = clamp(all_columns, (LaneInt)(0), (LaneInt)(frame->width - 1));
+  const LaneFloat place_x = to_lane_float(all_columns) * params->spacing_x + params->start_x;
   const LaneEvidence none = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
-  RowsEvidence rows = {none, none, 0.0f};
-  SampleLanes above = load_row(colour, frame, x, columns, samples.first.y - 1);
-  SampleLanes own = load_row(colour, frame, x, columns, samples.first.y);
-  for (int y = samples.first.y; y <= samples.last.y; ++y) {
+  RowsEvidence sum = {none, none, 0.0f};
+  SampleLanes above = load_row(colour, frame, x, columns, rows.x - 1);
+  SampleLanes own = load_row(colour, frame, x, columns, rows.x), beside = own;
+  for (int y = rows.x; y <= rows.y; ++y) {
     will_read_colour(colour, frame->colour, x + kColourAhead, y + 1);
     const SampleLanes below = load_row(colour, frame, x, columns, y + 1);
+    if (loads_beside && (y - rows.x) % kRowsBeside == 0) beside = load_beside(colour, frame, x, y);
     const float place_y = (float)y * params->spacing_y + params->start_y;
     LaneInt index;
-    LaneMask judged = find_judged(past, depth, depth_layout, params, tile, columns, y, place_x, place_y, &index);
-    judged &= middle & own.valid;
+    LaneMask judged = find_judged(past, depth, depth_layout, params, &way, columns, y, place_x, place_y, &index);
+    judged &= (of_left | of_right) & own.valid;
     if (any_lane(judged)) {
       will_read_history(past->history, index.s1 + kHistoryAhead);
-      const Neighbours near = neighbours_of(&above, &own, &below, params->parity >= 0);
-      add_row(&rows, exposed(gather_history(past->history, index), past->change), &own, &near, judged,
+      const Neighbours near = neighbours_of(&above, &own, &below, &beside, params->parity >= 0);
+      add_row(&sum, exposed(gather_history(past->history, index), past->change), &own, &near, judged,
               (int)place_y % kTemporalTile < kTemporalCell);
     }
     above = own;
     own = below;
+    beside = next_beside(&beside);
   }
-  add_rows(evidence, &rows, to_lane_int(place_x) % kTemporalTile < kTemporalCell);
+  const LaneMask in_left_cells = to_lane_int(place_x) % kTemporalTile < kTemporalCell;
+  add_rows(&tiles[0].evidence, &sum, of_left & in_left_cells, of_left & mask_not(in_left_cells));
+  add_rows(&tiles[1].evidence, &sum, of_right & in_left_cells, of_right & mask_not(in_left_cells));
+}
+
+// Finds what the samples of two tiles, in the same rows, say of history.
+static inline void judge_tiles(JudgedTile* tiles, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
+                               TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
+                               int2 rows) {
+  const int2 none = (int2)(0, -1);
+  const int fewer = kLanes - 2;
+  // Where samples are farther apart than tiles, both may have the same, and are judged one by one.
+  const bool share = max(tiles[0].columns.x, tiles[1].columns.x) <= min(tiles[0].columns.y, tiles[1].columns.y);
+  for (int round = 0; round <= (share ? 1 : 0); ++round) {
+    const int2 left = share && round == 1 ? none : tiles[0].columns;
+    const int2 right = share && round == 0 ? none : tiles[1].columns;
+    const int first = left.x <= left.y ? left.x : right.x, last = max(left.y, right.y), count = last - first + 1;
+    const bool loads_beside = params->parity < 0 && (count + kLanes - 1) / kLanes < (count + fewer - 1) / fewer;
+    for (int x = first; x <= last; x += loads_beside ? kLanes : fewer)
+      judge_columns(tiles, colour, frame, depth, depth_layout, past, params, rows, left, right, x, loads_beside);
+  }
 }
 #else
 // Adds what the tile's samples in column x say.
-static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, const ExposedFrame* frame,
-                                 DEPTH_TEXELS depth, TexelLayout depth_layout, const Past* past,
-                                 const TemporalTileParams* params, TileReprojection tile, SampleRange samples, int x) {
+static inline void judge_column(JudgedTile* tile, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
+                                TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
+                                int2 rows, int x) {
+  const WayBack way = way_back(tile);
+  TileEvidence* evidence = &tile->evidence;
   const int aside = params->parity >= 0 ? 1 : 0;  // the shaded neighbours on a checkerboard are the diagonal ones
   const float place_x = (float)x * params->spacing_x + params->start_x;
-  for (int y = samples.first.y; y <= samples.last.y; ++y) {
+  for (int y = rows.x; y <= rows.y; ++y) {
     const float place_y = (float)y * params->spacing_y + params->start_y;
     int index;
-    if (!find_judged(past, depth, depth_layout, params, tile, x, y, place_x, place_y, &index)) continue;
+    if (!find_judged(past, depth, depth_layout, params, &way, x, y, place_x, place_y, &index)) continue;
     const float4 before = exposed(load_history(past->history, index), past->change);
     const float4 own = sample_at(colour, frame, x, y);
     if (fabs(before.w) < JUDGED_CONFIDENCE_MIN || !is_valid(own)) continue;
@@ -335,14 +437,13 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, c
     }
   }
 }
+
+// Finds what the samples of a tile say of history.
+static inline void judge_tiles(JudgedTile* tile, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
+                               TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
+                               int2 rows) {
+  for (int x = tile->columns.x; x <= tile->columns.y; ++x)
+    judge_column(tile, colour, frame, depth, depth_layout, past, params, rows, x);
+}
 #endif
 
-// Returns what a tile's samples say of history.
-static inline TileEvidence judge_history(COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
-                                         TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
-                                         TileReprojection tile, SampleRange samples) {
-  TileEvidence evidence = no_evidence();
-  for (int first = samples.first.x; first <= samples.last.x; first += kJudgedAtOnce)
-    judge_columns(&evidence, colour, frame, depth, depth_layout, past, params, tile, samples, first);
-  return evidence;
-}
