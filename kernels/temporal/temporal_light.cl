@@ -31,7 +31,7 @@
 
 // The evidence of 3x3 tiles.
 typedef struct EvidenceAround {
-  TileEvidence sum;
+  float brightening, light, history_error, neighbour_error, count, brighter, outliers;  // sums, as in TileEvidence
   float change;  // sum of the magnitudes of the brightenings
   float confirmation, recent_outliers;  // the most, in the previous frame
   bool has_motion_edge;
@@ -39,24 +39,22 @@ typedef struct EvidenceAround {
 
 static inline EvidenceAround sum_evidence(__global const TileReprojection* tiles, __global const TileEvidence* evidence,
                                           __global const TileLight* previous, int tiles_x, int tiles_y, int x, int y) {
-  EvidenceAround around = {no_evidence(), 0.0f, 0.0f, 0.0f, false};
+  float8 sum = (float8)(0.0f);  // of the first fields of TileEvidence
+  float2 most = (float2)(0.0f);
+  float change = 0.0f;
+  int edges = 0;
   for (int row = max(y - 1, 0); row <= min(y + 1, tiles_y - 1); ++row) {
     for (int column = max(x - 1, 0); column <= min(x + 1, tiles_x - 1); ++column) {
       const int i = row * tiles_x + column;
-      const TileEvidence tile = evidence[i];
-      around.sum.brightening += tile.brightening;
-      around.sum.light += tile.light;
-      around.sum.history_error += tile.history_error;
-      around.sum.neighbour_error += tile.neighbour_error;
-      around.sum.count += tile.count;
-      around.sum.brighter += tile.brighter;
-      around.sum.outliers += tile.outliers;
-      around.change += fabs(tile.brightening);
-      around.confirmation = max(around.confirmation, previous[i].confirmation);
-      around.recent_outliers = max(around.recent_outliers, previous[i].recent_outliers);
-      around.has_motion_edge = around.has_motion_edge || tiles[i].has_motion_edge;
+      const float8 tile = vload8(0, &evidence[i].brightening);
+      sum += tile;
+      change += fabs(tile.s0);
+      most = max(most, vload2(0, &previous[i].confirmation));
+      edges |= tiles[i].has_motion_edge;
     }
   }
+  const EvidenceAround around = {sum.s0, sum.s1, sum.s2, sum.s3, sum.s4, sum.s5, sum.s6, change, most.x, most.y,
+                                 edges != 0};
   return around;
 }
 
@@ -68,12 +66,11 @@ typedef struct LightChange {
 } LightChange;
 
 static inline LightChange change_of(const EvidenceAround* around) {
-  const TileEvidence sum = around->sum;
   LightChange change;
-  change.relative = sum.brightening / max(sum.light, LIGHT_SUM_MIN);
-  change.coherence = fabs(sum.brightening) / max(around->change, LIGHT_SUM_MIN);
+  change.relative = around->brightening / max(around->light, LIGHT_SUM_MIN);
+  change.coherence = fabs(around->brightening) / max(around->change, LIGHT_SUM_MIN);
   change.direction = change.relative > 0.0f ? 1.0f : -1.0f;
-  change.is_agreed = sum.brighter * change.direction > RELIGHT_MAJORITY_MIN * sum.count;
+  change.is_agreed = around->brighter * change.direction > RELIGHT_MAJORITY_MIN * around->count;
   return change;
 }
 
@@ -152,13 +149,25 @@ static inline float follow_light(float4 sum, float units, float* trend) {
 
 // ---- Cells.
 
-// Returns how far the mean brightening alternates: the smaller of two frames' whose signs differ.
-static inline float alternation(float now, float before) {
-  return now * before < 0.0f ? min(fabs(now), fabs(before)) : 0.0f;
-}
-
 // A field of four cells.
 #define OF_CELLS(cells, field) (float4)((cells)[0].field, (cells)[1].field, (cells)[2].field, (cells)[3].field)
+
+// CellLight of the four cells of a tile.
+typedef struct CellLights {
+  float4 rejection, mean_brightening, flicker, suspicion, drift;
+} CellLights;
+
+static inline CellLight first_cell(const CellLights* cells) {
+  const CellLight first = {cells->rejection.x, cells->mean_brightening.x, cells->flicker.x, cells->suspicion.x,
+                           cells->drift.x};
+  return first;
+}
+
+static inline CellLights next_cells(const CellLights* cells) {
+  const CellLights next = {cells->rejection.yzwx, cells->mean_brightening.yzwx, cells->flicker.yzwx,
+                           cells->suspicion.yzwx, cells->drift.yzwx};
+  return next;
+}
 
 // The evidence of the tile's four cells and of the twelve around them; none outside the picture.
 typedef struct CellsAround {
@@ -243,9 +252,9 @@ static inline float4 judge(const float4* inputs) {
 
 // The same of the cells of a tile, by what they say `now` and said before, in a tile of such flicker, and by what the
 // tile itself and the 3x3 tiles around say. Whether a cell has become brighter or darker does not matter.
-static inline float4 judge_cells(const CellsAround* grid, const CellLight* now, const CellLight* before, float flicker,
-                                 __global const TileEvidence* tile, const TileEvidence* tiles) {
-  const float4 mean = OF_CELLS(now, mean_brightening), own_count = OF_CELLS(tile->cells, count);
+static inline float4 judge_cells(const CellsAround* grid, const CellLights* now, const CellLights* before,
+                                 float flicker, __global const TileEvidence* tile, const EvidenceAround* tiles) {
+  const float4 mean = now->mean_brightening, own_count = OF_CELLS(tile->cells, count);
   const float4 direction = select((float4)(1.0f), (float4)(-1.0f), mean < 0.0f);
   const float of_tiles = max(tiles->count, 1.0f), usual = tiles->neighbour_error / of_tiles + JUDGE_ERROR_FLOOR;
   const float per_usual = 1.0f / usual, per_sample = per_usual / max(tile->count, 1.0f);
@@ -254,9 +263,9 @@ static inline float4 judge_cells(const CellsAround* grid, const CellLight* now, 
       fabs(mean) * per_usual,
       grid->brightening * per_sample_around * per_usual,
       mean_of_line(grid->means, direction) * per_usual,
-      direction * OF_CELLS(before, mean_brightening) * per_usual,
-      direction * OF_CELLS(before, drift) * per_usual,
-      OF_CELLS(now, flicker) * per_usual,
+      direction * before->mean_brightening * per_usual,
+      direction * before->drift * per_usual,
+      now->flicker * per_usual,
       (float4)(flicker * per_usual),
       (float4)(tile->history_error * per_sample),
       (float4)(tiles->history_error / of_tiles * per_usual),
@@ -270,15 +279,19 @@ static inline float4 judge_cells(const CellsAround* grid, const CellLight* now, 
   return judge(inputs);
 }
 
-// What is known of a cell, but for its suspicion and rejection. `explained`: of each sample's brightening, by the broad
-// gain.
-static inline CellLight cell_light(CellEvidence evidence, float explained, CellLight before) {
-  CellLight cell;
-  cell.mean_brightening = (evidence.brightening - explained * evidence.count) / max(evidence.count, 1.0f);
-  cell.flicker = FLICKER_MEMORY * before.flicker +
-                 (1.0f - FLICKER_MEMORY) * alternation(cell.mean_brightening, before.mean_brightening);
-  cell.drift = DRIFT_MEMORY * before.drift + cell.mean_brightening;
-  return cell;
+// What is known of a tile's cells, but for their suspicion and rejection. `explained`: of each sample's brightening, by
+// the broad gain.
+static inline CellLights cell_lights(__global const CellEvidence* cells, float explained, const CellLights* before) {
+  const float4 count = OF_CELLS(cells, count);
+  const float4 mean = (OF_CELLS(cells, brightening) - explained * count) / max(count, 1.0f);
+  // How far it alternates: the smaller of two frames' whose signs differ.
+  const float4 alternation = select((float4)(0.0f), min(fabs(mean), fabs(before->mean_brightening)),
+                                    mean * before->mean_brightening < 0.0f);
+  CellLights lights;
+  lights.mean_brightening = mean;
+  lights.flicker = FLICKER_MEMORY * before->flicker + (1.0f - FLICKER_MEMORY) * alternation;
+  lights.drift = DRIFT_MEMORY * before->drift + mean;
+  return lights;
 }
 
 // Returns which of `count` tiles or cells in a row, of `size` pixels, the middle of number i was in, `step` texels ago.
@@ -286,20 +299,19 @@ static inline int source_of(int i, int size, int step, int count) {
   return clamp(i * size + size / 2 - step, 0, count * size - 1) / size;
 }
 
-// Returns what the previous frame remembered of tile (x, y) and of its cells, where a rigid tile was.
-static inline TileLight remember(__global const TileLight* previous, TileReprojection tile, int tiles_x, int tiles_y,
-                                 int x, int y) {
-  const int from_x = source_of(x, kTemporalTile, tile.step_x, tiles_x);
-  const int from_y = source_of(y, kTemporalTile, tile.step_y, tiles_y);
-  TileLight before = previous[from_y * tiles_x + from_x];
-  if (tile.step_x == 0 && tile.step_y == 0) return before;
-  UNROLL_LANE(4)
+// Returns what the previous frame remembered of the cells of tile (x, y), where a rigid tile was.
+static inline CellLights remember_cells(__global const TileLight* previous, TileReprojection tile, int tiles_x,
+                                        int tiles_y, int x, int y) {
+  CellLight cells[4];
+  UNROLL_ALWAYS(4)
   for (int c = 0; c < 4; ++c) {
     const int column = source_of(2 * x + c % 2, kTemporalCell, tile.step_x, 2 * tiles_x);
     const int row = source_of(2 * y + c / 2, kTemporalCell, tile.step_y, 2 * tiles_y);
-    before.cells[c] = previous[row / 2 * tiles_x + column / 2].cells[row % 2 * 2 + column % 2];
+    cells[c] = previous[row / 2 * tiles_x + column / 2].cells[row % 2 * 2 + column % 2];
   }
-  return before;
+  const CellLights lights = {OF_CELLS(cells, rejection), OF_CELLS(cells, mean_brightening), OF_CELLS(cells, flicker),
+                             OF_CELLS(cells, suspicion), OF_CELLS(cells, drift)};
+  return lights;
 }
 
 // That of tile (x, y).
@@ -308,7 +320,11 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
                                  __global const TileLight* previous, int x, int y) {
   const int i = y * tiles_x + x;
   __global const TileEvidence* own = evidence + i;
-  const TileLight before = remember(previous, tiles[i], tiles_x, tiles_y, x, y);
+  const TileReprojection way = tiles[i];
+  const int from_x = source_of(x, kTemporalTile, way.step_x, tiles_x);
+  const int from_y = source_of(y, kTemporalTile, way.step_y, tiles_y);
+  const TileLight before = previous[from_y * tiles_x + from_x];
+  const CellLights cells_before = remember_cells(previous, way, tiles_x, tiles_y, x, y);
   const EvidenceAround around = sum_evidence(tiles, evidence, previous, tiles_x, tiles_y, x, y);
   const LightChange change = change_of(&around);
   TileLight tile;
@@ -327,52 +343,43 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   const bool relit = is_widespread && is_relit(total);
 
   // Rejection. Where the light has changed, history follows it.
-  float flicker = 0.0f;
-  UNROLL_LANE(4)
-  for (int c = 0; c < 4; ++c) {
-    tile.cells[c] = cell_light(own->cells[c], explained, before.cells[c]);
-    flicker += 0.25f * tile.cells[c].flicker;
-  }
+  CellLights cells = cell_lights(own->cells, explained, &cells_before);
+  const float4 flickers = 0.25f * cells.flicker;
+  const float flicker = flickers.x + flickers.y + flickers.z + flickers.w;
   const float by_cut = is_widespread && !relit ? rejection_by_cut(total) : 0.0f;
-  const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;
+  const bool waits = way.is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;
   tile.confirmation = CONFIRMATION_MEMORY * before.confirmation;
-  tile.rejection = 0.0f;
-  const float4 changed = fabs(OF_CELLS(tile.cells, mean_brightening));
-  const int4 asked = changed > FLICKER_RATIO_MIN * OF_CELLS(tile.cells, flicker);
-  float all_judged[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+  const int4 asked = fabs(cells.mean_brightening) > FLICKER_RATIO_MIN * cells.flicker;
+  float4 judged = (float4)(0.0f);
   if (!is_local && any(asked)) {
     const CellsAround grid = cells_around(evidence, tiles_x, tiles_y, x, y, explained);
-    const float4 found = judge_cells(&grid, tile.cells, before.cells, flicker, own, &around.sum);
-    vstore4(select((float4)(0.0f), clamp(found, 0.0f, 1.0f), asked), 0, all_judged);
+    const float4 found = judge_cells(&grid, &cells, &cells_before, flicker, own, &around);
+    judged = select((float4)(0.0f), clamp(found, 0.0f, 1.0f), asked);
   }
-  UNROLL_LANE(4)
-  for (int c = 0; c < 4; ++c) {
-    CellLight* cell = &tile.cells[c];
-    const float judged = all_judged[c];
-    cell->suspicion = copysign(judged, cell->mean_brightening);
-    const float suspected = before.cells[c].suspicion;
-    const float sure =
-        cell->suspicion * suspected > 0.0f ? max(2.0f * min(judged, fabs(suspected)) - 1.0f, 0.0f) : 0.0f;
-    if (sure > 0.0f) tile.confirmation = 1.0f;
-    cell->rejection = clamp(max(waits ? sure : judged, by_cut), 0.0f, 1.0f);
-    tile.rejection = max(tile.rejection, cell->rejection);
-  }
+  cells.suspicion = copysign(judged, cells.mean_brightening);
+  const float4 sure = select((float4)(0.0f), max(2.0f * min(judged, fabs(cells_before.suspicion)) - 1.0f, 0.0f),
+                             cells.suspicion * cells_before.suspicion > 0.0f);
+  if (any(sure > 0.0f)) tile.confirmation = 1.0f;
+  cells.rejection = clamp(max(waits ? sure : judged, by_cut), 0.0f, 1.0f);
   const float cut = clamp(by_cut, 0.0f, 1.0f);
   tile.cut = max(cut, CUT_MEMORY * before.cut);
   tile.new_cut = max(cut - before.cut, 0.0f);
 
   // Outliers. Those of a picture that is another one, or in another light, are no faults.
-  tile.recent_outliers = around.sum.outliers > 0.0f ? 1.0f : OUTLIER_MEMORY * before.recent_outliers;
+  tile.recent_outliers = around.outliers > 0.0f ? 1.0f : OUTLIER_MEMORY * before.recent_outliers;
   tile.holds_back =
-      around.sum.outliers > 0.0f && around.recent_outliers < OUTLIER_REARM_MAX && !relit && !(by_cut > 0.0f);
+      around.outliers > 0.0f && around.recent_outliers < OUTLIER_REARM_MAX && !relit && !(by_cut > 0.0f);
   if (tile.holds_back) {
-    tile.rejection = 0.0f;
-    UNROLL_LANE(4)
-    for (int c = 0; c < 4; ++c) {
-      tile.cells[c] = before.cells[c];
-      tile.cells[c].rejection = 0.0f;
-    }
+    cells = cells_before;
+    cells.rejection = (float4)(0.0f);
     tile.gain = broad;
+  }
+  const float2 larger = max(cells.rejection.lo, cells.rejection.hi);
+  tile.rejection = max(larger.x, larger.y);
+  UNROLL_ALWAYS(4)
+  for (int c = 0; c < 4; ++c) {
+    tile.cells[c] = first_cell(&cells);
+    cells = next_cells(&cells);
   }
   return tile;
 }
