@@ -17,7 +17,8 @@
 //   reactive0, 1           in   REACTIVE 1: R8, the same viewports; 0: the frames may be mixed, 1: they may not
 //   previous_reprojection  in   MOTION_EDGE 1: what this kernel wrote for frame n-1; all zero where there is none
 //   reprojection           out  Reprojection of each sample of frame n
-//   open_trust             out  OPEN_TRUST 1: of each sample, row by row, trust without visible and motion edges
+//   open_trust             out  OPEN_TRUST 1: of each sample, row by row, trust without visible and motion edges; with
+//                               a minus sign where one of those in `reprojection` is more than LAYER_MOTION_MIN
 // Options: REACTIVE     0 (default) | 1
 //          RESIDUAL     0 (default) | 1: K is not 0
 //          MOTION_EDGE  0 (default) | 1: the motion edge at each sample is found as well. Where one of the 2x2 previous
@@ -55,6 +56,9 @@
 #error "OPEN_TRUST must be 0 or, with MOTION_EDGE 1, 1"
 #endif
 
+#if OPEN_TRUST
+#include "layers/constants.h"
+#endif
 #include "motion/reproject_samples.h"
 #include "motion/velocity_params.h"
 
@@ -164,11 +168,8 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
     const float4 residual_y = velocity.odd * params.speed0_y - velocity_before.odd * params.speed1_y;
     trust /= 1.0f + residual_x * residual_x + residual_y * residual_y;
 #endif
-#if OPEN_TRUST
-    store_floats(open_trust + y * params.width + x, count, trust);
-#endif
-    trust = select((float4)(0.0f), trust, before.least <= limit);  // visible
-    found.trust = as_float4(select(as_int4(trust), (int4)(NAN_BITS), lost));
+    const float4 visible = select((float4)(0.0f), trust, before.least <= limit);
+    found.trust = as_float4(select(as_int4(visible), (int4)(NAN_BITS), lost));
 
     // Find motion edges, and trust nothing that a nearer surface's edge has mixed in.
 #if MOTION_EDGE
@@ -179,6 +180,10 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
     found.motion_edge = select(edge, -previous_edge, previous_edge > edge);
 #else
     found.motion_edge = (float4)(0.0f);
+#endif
+#if OPEN_TRUST
+    const int4 has_edge = fabs(found.motion_edge) > LAYER_MOTION_MIN;  // -1, or 0
+    store_floats(open_trust + y * params.width + x, count, copysign(trust, as_float4(has_edge)));
 #endif
     store_reprojections(reprojection, texel_index(params.reprojection, x, y), count, found);
   }

@@ -9,7 +9,7 @@
 //   params            in   viewports, layouts, scales
 //   velocity          in   RG16F or RG32F, viewport
 //   depth             in   R32F, viewport, reversed
-//   reprojection      in   Reprojection of each sample: only motion edges
+//   open_trust        in   of each sample, from reproject: its sign tells of motion edges
 //   previous_keys     in   of the previous frame's grid of records; all zero where there is none
 //   previous_records  in   LayerRecord of each of its cells that has one
 //   keys              out  of this frame's grid
@@ -19,6 +19,16 @@
 #include "layers/records.h"
 
 enum { kTogether = kLanes };  // samples that are looked at together
+
+// Whether the sign of one of `count` trusts, at most one a lane, tells of a motion edge.
+static inline bool has_motion_edge(__global const int* trusts, int count) {
+#if LANES == 8
+  if (count == kLanes) return any_of_eight(vload8(0, trusts) & (int)0x80000000);
+#endif
+  int all = 0;
+  for (int i = 0; i < count; ++i) all |= trusts[i];
+  return all < 0;
+}
 
 // Whether a sample from (x, y) on may be near: its depth is less than a neighbour's by the gap between layers.
 static inline bool may_be_near(const LayerParams* params, DEPTH_TEXELS depth, int x, int y) {
@@ -87,7 +97,7 @@ static inline float2 motion_before(const LayerParams* params, __global const uin
 }
 
 __kernel void layer_records(const LayerParams params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth,
-                            __global const float* reprojection, __global const uint* previous_keys,
+                            __global const float* open_trust, __global const uint* previous_keys,
                             __global const LayerRecord* previous_records, __global uint* keys,
                             __global LayerRecord* records) {
   const int y = get_global_id(1);
@@ -96,11 +106,11 @@ __kernel void layer_records(const LayerParams params, VELOCITY_TEXELS velocity, 
 
   for (int start = item.first; start < item.end; start += item.step) {
     const int stop = start + min((int)kTogether, pixels_from(item, start));
+    __global const int* edges = (__global const int*)open_trust + y * params.width + start;
     for (int x = start; x < stop; ++x) keys[y * params.width + x] = 0;
-    if (!may_be_near(&params, depth, start, y)) continue;
+    if (!has_motion_edge(edges, stop - start) || !may_be_near(&params, depth, start, y)) continue;
     for (int x = start; x < stop; ++x) {
-      const float edge = reprojection[4 * texel_index(params.reprojection, x, y) + 3];
-      if (!(fabs(edge) > LAYER_MOTION_MIN)) continue;  // a motion edge of this frame is no larger
+      if (edges[x - start] >= 0) continue;
       const Surface own = surface_at(&params, velocity, depth, x, y);
       if (!own.is_known || !(own.depth > 0.0f) || !is_near(&params, velocity, depth, own, x, y)) continue;
 

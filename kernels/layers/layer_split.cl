@@ -13,8 +13,8 @@
 //   keys              in      of this frame's grid of records
 //   previous_records  in      LayerRecord of each cell of the previous grid that has one
 //   records           in/out  LayerRecord of each near sample; grows by those that came from the previous frame
-//   reprojection      in/out  Reprojection of each sample: of split ones the far layer's
-//   splits            out     LayerSplit of each sample
+//   reprojection      in/out  Reprojection of each sample: of split ones the far layer's, which tells that they are
+//   splits            out     LayerSplit of each split sample
 //   marks             out     of each tile: not 0 if a sample in it is split. All zero before
 // Options: SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/layer_split.cpp
@@ -146,35 +146,29 @@ __kernel void layer_split(const LayerParams params, VELOCITY_TEXELS velocity, DE
   const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kWindow);
   if (item.first >= item.end || y >= params.height) return;
 
-  const LayerSplit none = {0.0f, 0.0f, 0.0f, 0.0f};
   for (int start = item.first; start < item.end; start += item.step) {
     const int stop = start + min((int)kWindow, pixels_from(item, start));
-    if (!has_record_near(&params, keys, start, y)) {
-      for (int x = start; x < stop; ++x) splits[y * params.width + x] = none;
-      continue;
-    }
+    if (!has_record_near(&params, keys, start, y)) continue;
     const NearestRecords nearest = find_records(&params, keys, previous_records, start, y);
     for (int x = start; x < stop; ++x) {
       const int i = y * params.width + x;
       const int cell = nearest.cell[x - start];
-      LayerSplit split = none;
       if (cell >= 0) {
         const LayerRecord record = record_of(keys[cell], cell, previous_records, records);
         const float2 motion = (float2)(record.motion_x, record.motion_y);
         Surface behind;
         if (find_behind(&params, velocity, depth, record.depth, x, y, &behind) && move_apart(motion, behind.motion)) {
-          split.near_depth = record.depth;
-          split.far_depth = behind.depth;
-          split.motion_x = motion.x;
-          split.motion_y = motion.y;
+          const LayerSplit split = {record.depth, behind.depth, motion.x, motion.y};
+          splits[i] = split;
+          const float trust = fabs(open_trust[i]);
           const float2 far_motion = far_motion_at(&params, velocity, depth, split, behind, x, y);
-          vstore4((float4)(far_motion, open_trust[i], 0.0f), texel_index(params.reprojection, x, y), reprojection);
+          vstore4((float4)(far_motion, trust, as_float(SPLIT_MOTION_EDGE_BITS)),
+                  texel_index(params.reprojection, x, y), reprojection);
           mark_tile(&params, marks, x, y);
           if (record_age(keys[cell]) == 0 && !was_known(&params, previous_keys, record))
-            open_trust[i] = min(open_trust[i], MIXED_TRUST_MAX);
+            open_trust[i] = min(trust, MIXED_TRUST_MAX);
         }
       }
-      splits[i] = split;
       if (keys[i] != 0 && record_age(keys[i]) != 0) records[i] = record_of(keys[i], i, previous_records, records);
     }
   }

@@ -14,7 +14,7 @@
 //   reprojection       in   Reprojection of each sample, of split ones the far layer's
 //   depth, depth1      in   R32F, viewports of both frames
 //   open_trust         in   of each sample
-//   splits             in   LayerSplit of each sample
+//   splits             in   LayerSplit of each split sample
 //   history            in   the far layer of the previous frame
 //   alpha              in   ALPHA 1: its alpha
 //   near_history       in   the near layer of the previous frame, in the same format
@@ -72,8 +72,9 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
 
     // The far layers, or the only ones.
     const NearestSamples nearest = find_nearest_samples(&params, positions, x, row, tile);
-    const LayeredPixels pixels = find_layers(depth, depth_layout, &params, splits, open_trust, &nearest);
     Reprojections motion = load_reprojections(&params, reprojection, &nearest);
+    const LayeredPixels pixels =
+        find_layers(depth, depth_layout, &params, splits, open_trust, &nearest, motion.is_split);
     const FetchedLayers far = fetch_far(&pixels, &past, depth1, tile, &motion, x, y);
     LaneFloat known_alpha;
     const FetchedHistory fetched = known_far(&pixels, &far, &motion, &known_alpha);

@@ -12,7 +12,7 @@
 //   history         in   the layer of the previous frame
 //   previous_tiles  in   TileReprojection of each tile, of the previous frame
 //   depth           in   LAYERS 1: R32F, viewport
-//   splits          in   LAYERS 1: LayerSplit of each sample
+//   splits          in   LAYERS 1: LayerSplit of each split sample
 //   marks           in   LAYERS 1: of each tile, not 0 if a sample in it is split
 //   previous_layers in   LAYERS 1: LayerTile of each tile, of the previous frame
 //   layers          out  LAYERS 1: the same of this frame
@@ -44,6 +44,7 @@
 // Inputs of temporal_tiles that tell of layers.
 typedef struct LayerInputs {
   TexelLayout depth;
+  __global const float* reprojection;
   __global const LayerSplit* splits;
   __global const int* marks;
   __global const LayerTile* previous;
@@ -80,8 +81,8 @@ static inline float mean_depth(const TemporalTileParams* params, DEPTH_TEXELS de
   float sum = 0.0f;
   for (int y = samples.first.y; y <= samples.last.y; ++y) {
     for (int x = samples.first.x; x <= samples.last.x; ++x) {
-      const LayerSplit split = in->splits[y * params->frame.width + x];
-      sum += is_split(split) ? split.far_depth : load_depth(depth, in->depth, x, y);
+      const bool has_two = is_split_at(params, in->reprojection, x, y);
+      sum += has_two ? in->splits[y * params->frame.width + x].far_depth : load_depth(depth, in->depth, x, y);
     }
   }
   const int2 count = samples.last - samples.first + 1;
@@ -112,8 +113,8 @@ static inline LayerTile near_layer_of(const TemporalTileParams* params, const La
   float between = 0.0f, near_depth = 0.0f, count = 0.0f;
   for (int y = around.first.y; y <= around.last.y; ++y) {
     for (int x = around.first.x; x <= around.last.x; ++x) {
+      if (!is_split_at(params, in->reprojection, x, y)) continue;
       const LayerSplit split = in->splits[y * params->frame.width + x];
-      if (!is_split(split)) continue;
       const float2 motion = (float2)(split.motion_x, split.motion_y);
       least = min(least, motion);
       most = max(most, motion);
@@ -248,7 +249,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
       tile->reprojection = reproject_tile(&params, range, previous_tiles, corner);
 #endif
 #if LAYERS
-      const LayerInputs in = {depth_layout, splits, marks, previous_layers};
+      const LayerInputs in = {depth_layout, reprojection, splits, marks, previous_layers};
       const LayerTile own = layer_tile(&params, depth, &in, samples, range, (int2)(tile_x, tile_y), corner,
                                        previous_tiles, &tile->reprojection, &hidden);
       layers[i] = own;

@@ -242,10 +242,9 @@ std::vector<reference::LayerTile> make_layers(const reference::ResolveInputs& in
 }
 
 std::vector<LayerSplit> splits_of(const std::vector<reference::LayerSplit>& splits) {
-  const auto number = [](double value) { return static_cast<float>(value); };
   std::vector<LayerSplit> made;
-  for (const reference::LayerSplit& s : splits)
-    made.push_back({number(s.near_depth), number(s.far_depth), number(s.motion[0]), number(s.motion[1])});
+  for (const reference::LayerSplit& split : splits)
+    made.push_back(to_kernel(split));
   return made;
 }
 
@@ -267,6 +266,8 @@ LayerStageInputs LayerStages::inputs(Rig& rig, const StageSpec& spec) const {
   in.stage.frame.depth = depth_image(rig, spec, variant_.storage, spec.render, out.now.frame.depth);
   out.open_trust = make_open_trust(out.now.reprojections.size(), spec.seed + 5000);
   out.splits = make_splits(out.now, spec.seed + 6000);
+  store_reprojections(rig, spec, in.stage, out.splits);
+  out.now.reprojections = in.stage.reference.reprojections;
 
   reference::LayerHistory& past = out.past;
   past.width = spec.output.width;

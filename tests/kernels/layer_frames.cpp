@@ -131,6 +131,17 @@ std::vector<Pixel> make_reprojection(const LayerFrames& in, const LayerSpec& spe
   return made;
 }
 
+// Returns open trusts, with a minus sign where there is a motion edge.
+std::vector<float> make_open_trust(const LayerFrames& in, const LayerSpec& spec) {
+  constexpr double kEdgeMin = .05;  // px
+  std::mt19937 random(spec.seed + 5);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  std::vector<float> made;
+  for (const Pixel& sample : in.reprojection)
+    made.push_back(std::copysign(uniform(random), std::abs(sample[3]) > kEdgeMin ? -1.f : 1.f));
+  return made;
+}
+
 }  // namespace
 
 std::vector<LayerVariant> layer_variants() {
@@ -268,27 +279,24 @@ LayerFrames RecordStages::frames(Rig& rig, const LayerSpec& spec) {
     earlier.render = spec.previous;
     LayerFrames alone = of(before, before);
     alone.reprojection = make_reprojection(alone, earlier);
+    alone.open_trust = make_open_trust(alone, earlier);
     in.before = find_records(rig, alone, earlier);
     add_carried(in.before, spec);
   }
   in.reference.before = to_reference(in.before);
   in.reprojection = make_reprojection(in, spec);
-  std::mt19937 random(spec.seed + 5);
-  std::uniform_real_distribution<float> uniform(0, 1);
-  for (std::size_t i = 0; i < area(spec.render); ++i)
-    in.open_trust.push_back(uniform(random));
+  in.open_trust = make_open_trust(in, spec);
   return in;
 }
 
 KernelGrid RecordStages::find_records(Rig& rig, const LayerFrames& in, const LayerSpec& spec) {
-  const ImageView reprojection = rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, spec.render,
-                                           in.reprojection, spec.outside, spec.tight);
+  const GuardedBuffer open_trust(in.open_trust);
   const GuardedBuffer previous_keys(in.before.keys);
   const GuardedBuffer previous_records(in.before.records);
   const GuardedBuffer keys(std::vector<cl_uint>(area(spec.render), 0x12345678));
   const GuardedBuffer records(std::vector<LayerRecord>(area(spec.render)));
   records_->run(in.current, in.previous, spec.output, rig.counter(),
-                {{Resource::kReprojection, reprojection},
+                {{Resource::kOpenTrust, open_trust.view()},
                  {Resource::kPreviousRecordKeys, previous_keys.view()},
                  {Resource::kPreviousRecords, previous_records.view()},
                  {Resource::kRecordKeys, keys.view()},

@@ -95,7 +95,7 @@ struct LayerFrames {
   reference::LayerInputs reference;
   KernelGrid before;                // reference.before
   std::vector<Pixel> reprojection;  // one for each sample, its motion edge no less than it is
-  std::vector<float> open_trust;    // one for each sample
+  std::vector<float> open_trust;    // one for each sample, as reproject has it
 };
 
 class RecordStages {

@@ -177,8 +177,8 @@ TEST_P(LayerRecords, AreSoughtAtMotionEdgesOnly) {
   const LayerSpec spec{.output = {64, 40}, .render = {45, 23}, .previous = {45, 23}, .seed = 3};
   Rig rig;
   LayerFrames in = stages.frames(rig, spec);
-  for (testing::Pixel& sample : in.reprojection)
-    sample[3] = .05;
+  for (float& trust : in.open_trust)
+    trust = std::abs(trust);
   for (const cl_uint key : stages.find_records(rig, in, spec).keys)
     EXPECT_EQ(key, 0u);
 }

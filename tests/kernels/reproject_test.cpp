@@ -184,20 +184,28 @@ TEST(TemporalReproject, HistoryOutlivesACameraThatWalksBackwards) {
   EXPECT_EQ(trust_of_wall(.4f, 1, .1), 1) << "what moves along with the camera";
 }
 
-// Returns the open trust of each sample as reproject alone gives it: layer_split lowers it afterwards.
-std::vector<float> open_trust(Rig& rig, PassChain& chain, const FrameInputs& now, const FrameInputs& before) {
+// Of each sample as reproject alone gives it: layer_split lowers open trust afterwards.
+struct OpenReprojection {
+  std::vector<float> trust;
+  std::vector<Pixel> reprojections;
+};
+
+OpenReprojection open_reprojection(Rig& rig, PassChain& chain, const FrameInputs& now,
+                                   const FrameInputs& before) {
   const PassFrame frame = chain.frame(now, &before, {}, rig.counter());
   PassChain::enqueue(*chain.find("reproject"), frame, nullptr);
   std::vector<float> trust(static_cast<std::size_t>(now.render_extent.area()));
   const ImageView view = frame[Resource::kOpenTrust];
   clEnqueueReadBuffer(testing::impl().queue(), view.memory, CL_TRUE, view.offset,
                       trust.size() * sizeof(float), trust.data(), 0, nullptr, nullptr);
-  return trust;
+  return {trust, rig.pixels(frame[Resource::kReprojection], now.render_extent)};
 }
 
-// It is trust without a look at depths and motion edges, and a number where nothing is known of the sample.
+// It is trust without a look at depths and motion edges, and a number where nothing is known of the sample. Its sign
+// tells of motion edges.
 TEST(TemporalReproject, OpenTrustMatchesTheReference) {
-  std::int64_t decided = 0, compared = 0, unknown = 0, hidden = 0, dimmed = 0;
+  constexpr double kLayerMotionMin = .05;  // px
+  std::int64_t decided = 0, compared = 0, unknown = 0, hidden = 0, dimmed = 0, edges = 0;
   unsigned seed = 60;
   for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
     for (const PixelFormat velocity : {PixelFormat::kRG16F, PixelFormat::kRG32F}) {
@@ -226,7 +234,7 @@ TEST(TemporalReproject, OpenTrustMatchesTheReference) {
           TestFrame now = make_frame(rig, formats, spec);
           if (transparents) scatter_reactive(rig, now, storage, spec);
           PassChain chain(testing::device(), PlanFacts({.transparents = transparents}, settings));
-          const std::vector<float> actual = open_trust(rig, chain, now.inputs, before.inputs);
+          const auto [actual, reprojections] = open_reprojection(rig, chain, now.inputs, before.inputs);
           const auto expected = testing::expected_reprojections(
               now.reference, before.reference,
               {.reactive = transparents, .output_width = 129, .output_height = 65});
@@ -235,9 +243,13 @@ TEST(TemporalReproject, OpenTrustMatchesTheReference) {
             ++compared;
             if (undecided) continue;
             ++decided;
-            testing::expect_near(value.open_trust, bound.open_trust, static_cast<double>(actual[i]),
-                                 std::to_string(render.width) + " " + std::to_string(i));
+            const std::string what = std::to_string(render.width) + " " + std::to_string(i);
+            testing::expect_near(value.open_trust, bound.open_trust, static_cast<double>(std::abs(actual[i])),
+                                 what);
             if (HasFatalFailure()) return;
+            const bool has_edge = std::abs(reprojections[i][3]) > kLayerMotionMin;
+            edges += has_edge ? 1 : 0;
+            ASSERT_EQ(std::signbit(actual[i]), has_edge) << what;
             unknown += std::isnan(value.trust) ? 1 : 0;
             hidden += value.trust == 0 && value.open_trust > 0 ? 1 : 0;
             dimmed += value.open_trust > 0 && value.open_trust < 1 ? 1 : 0;
@@ -250,6 +262,7 @@ TEST(TemporalReproject, OpenTrustMatchesTheReference) {
   EXPECT_GT(unknown, compared / 64);
   EXPECT_GT(hidden, compared / 128);
   EXPECT_GT(dimmed, compared / 8);
+  EXPECT_GT(edges, compared / 8);
 }
 
 }  // namespace

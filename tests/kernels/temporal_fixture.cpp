@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "device/program_cache.h"
@@ -68,6 +69,8 @@ KernelTile to_kernel(const reference::Tile& tile) {
 }
 
 LayerSplit to_kernel(const reference::LayerSplit& split) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  if (!split.is_split()) return {kNan, kNan, kNan, kNan};
   return {.near_depth = static_cast<float>(split.near_depth),
           .far_depth = static_cast<float>(split.far_depth),
           .motion_x = static_cast<float>(split.motion[0]),

@@ -59,6 +59,11 @@ struct StageInputs {
   Exposure exposure = {1, 1, 1, 1};
 };
 
+// Puts the reprojections of `in.reference` on the device, those of split samples as layer_split leaves them; none is
+// split if `splits` is empty.
+void store_reprojections(Rig& rig, const StageSpec& spec, StageInputs& in,
+                         const std::vector<reference::LayerSplit>& splits);
+
 template <typename Element>
 cl::Buffer to_device(const std::vector<Element>& elements) {
   cl::Buffer buffer(impl().context, CL_MEM_READ_WRITE, elements.size() * sizeof(Element));
@@ -85,7 +90,7 @@ std::vector<double> decode_plane(PixelFormat texels, const std::vector<unsigned 
 struct KernelTile : TileReprojection, TileEvidence, TileLight {};
 
 KernelTile to_kernel(const reference::Tile& tile);
-LayerSplit to_kernel(const reference::LayerSplit& split);
+LayerSplit to_kernel(const reference::LayerSplit& split);  // not a number where the sample is not split
 LayerTile to_kernel(const reference::LayerTile& tile);
 reference::Tile to_reference(const KernelTile& tile);
 

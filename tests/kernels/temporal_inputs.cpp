@@ -257,12 +257,20 @@ StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
   if (!variant_.moves) return in;
   out.reprojections = make_moves(out, spec.seed + 3000);
   if (variant_.layers) add_layers(out, spec.seed + 4000);
-  std::vector<Pixel> moves;
-  for (const reference::Reprojection& move : out.reprojections)
-    moves.push_back({move.x, move.y, move.trust, move.motion_edge});
-  in.reprojection =
-      rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, spec.render, moves, spec.outside, spec.tight);
+  store_reprojections(rig, spec, in, out.splits);
   return in;
+}
+
+void store_reprojections(Rig& rig, const StageSpec& spec, StageInputs& in,
+                         const std::vector<reference::LayerSplit>& splits) {
+  std::vector<reference::Reprojection>& moves = in.reference.reprojections;
+  std::vector<Pixel> stored;
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    if (!splits.empty() && splits[i].is_split()) moves[i].motion_edge = -0.;  // as layer_split has it
+    stored.push_back({moves[i].x, moves[i].y, moves[i].trust, moves[i].motion_edge});
+  }
+  in.reprojection =
+      rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, spec.render, stored, spec.outside, spec.tight);
 }
 
 std::vector<reference::Tile> TemporalStages::tiles(const StageInputs& in, unsigned seed) const {

@@ -20,7 +20,7 @@ class LayerRecordsPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent render = frame.inputs.render_extent;
     const LayerParams params = layer_params(frame, shape(), render);
-    bind(frame, params, Resource::kVelocity, Resource::kDepth, Resource::kReprojection,
+    bind(frame, params, Resource::kVelocity, Resource::kDepth, Resource::kOpenTrust,
          Resource::kPreviousRecordKeys, Resource::kPreviousRecords, Resource::kRecordKeys,
          Resource::kRecords);
     launch(frame, render, params.columns_per_item, event);
@@ -42,10 +42,9 @@ void plan_layer_records(const PlanFacts& facts, PassList& list) {
       {.kernel = "layer_records",
        .options = velocity_options(facts.settings),
        .reason = "the second layer: samples of near surfaces at edges of motion",
-       .uses =
-           uses_of(facts.settings, {.reads = {Resource::kVelocity, Resource::kDepth, Resource::kReprojection,
-                                              Resource::kPreviousRecordKeys, Resource::kPreviousRecords},
-                                    .writes = {Resource::kRecordKeys, Resource::kRecords}}),
+       .uses = uses_of(facts.settings, {.reads = {Resource::kVelocity, Resource::kDepth, Resource::kOpenTrust,
+                                                  Resource::kPreviousRecordKeys, Resource::kPreviousRecords},
+                                        .writes = {Resource::kRecordKeys, Resource::kRecords}}),
        .make = make_pass<LayerRecordsPass>,
        .frames = Frames::kSparse});
 }

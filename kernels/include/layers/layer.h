@@ -24,16 +24,21 @@ typedef struct LayerRecord {
 } LayerRecord;
 QUINCUNX_CHECK_SIZE(LayerRecord, 32);
 
-// The two layers at a sample.
+// The two layers at a sample that has two; at others anything.
 typedef struct LayerSplit {
-  float near_depth, far_depth;  // reversed; near_depth 0: there is one layer
+  float near_depth, far_depth;  // reversed
   float motion_x, motion_y;     // the near layer's, output pixels, as that of a record
 } LayerSplit;
 QUINCUNX_CHECK_SIZE(LayerSplit, 16);
 
-static inline bool is_split(LayerSplit split) {
-  return split.near_depth > 0.0f;
+#ifndef __cplusplus
+// A sample has two layers if the motion edge in its Reprojection is -0, which is never one.
+#define SPLIT_MOTION_EDGE_BITS ((int)0x80000000)
+
+static inline bool is_split(float motion_edge) {
+  return as_int(motion_edge) == SPLIT_MOTION_EDGE_BITS;
 }
+#endif
 
 // Returns a depth half-way between the layers.
 static inline float between_of(LayerSplit split) {

@@ -28,18 +28,19 @@ typedef struct LayeredPixels {
 
 static inline LayeredPixels find_layers(DEPTH_TEXELS depth, TexelLayout layout, const TemporalParams* params,
                                         __global const LayerSplit* splits, __global const float* open_trust,
-                                        const NearestSamples* nearest) {
+                                        const NearestSamples* nearest, LaneMask is_split) {
   const int first = nearest->y * params->frame0.width;
   const LaneFloat4 split = gather4((__global const float*)(splits + first), nearest->x);
+  const LaneFloat none = (LaneFloat)(0.0f);
   LayeredPixels pixels;
   pixels.depth = load_depth_lanes(depth, layout, nearest->x, nearest->y);
-  pixels.is_split = split.x > 0.0f;
-  pixels.near_depth = select(pixels.depth, split.x, pixels.is_split);
-  pixels.far_depth = split.y;
-  pixels.motion_x = split.z;
-  pixels.motion_y = split.w;
-  pixels.between = 0.5f * (split.x + pixels.far_depth);
-  pixels.open_trust = max(gather(open_trust + first, nearest->x), (LaneFloat)(0.0f));
+  pixels.is_split = is_split;
+  pixels.near_depth = select(pixels.depth, split.x, is_split);
+  pixels.far_depth = select(none, split.y, is_split);
+  pixels.motion_x = select(none, split.z, is_split);
+  pixels.motion_y = select(none, split.w, is_split);
+  pixels.between = 0.5f * (select(none, split.x, is_split) + pixels.far_depth);
+  pixels.open_trust = max(fabs(gather(open_trust + first, nearest->x)), none);  // NaN is none
   return pixels;
 }
 

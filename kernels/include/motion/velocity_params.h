@@ -125,7 +125,7 @@ typedef struct Reprojection {
   float trust;  // in [0, 1]: of what the previous frame holds there; NaN: the sample's velocity or depth is not finite
   // The motion edge at the sample: the largest difference of velocity to its eight neighbours, output pixels a frame.
   // If that of the previous frame at the place above was larger, it stands here as a negative number. 0 without
-  // MOTION_EDGE.
+  // MOTION_EDGE. -0 from layer_split on: the sample has two layers (layers/layer.h).
   float motion_edge;
 } Reprojection;
 QUINCUNX_CHECK_SIZE(Reprojection, 16);

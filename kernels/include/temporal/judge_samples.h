@@ -27,7 +27,7 @@ typedef struct Past {
   __global const float* reprojection;
   HistoryLayer history;
   __global const TileReprojection* previous_tiles;
-  __global const LayerSplit* splits;  // one for each sample
+  __global const LayerSplit* splits;  // of samples that have two layers
   float change;                       // Exposure's
 } Past;
 
@@ -107,13 +107,20 @@ static inline LaneMask find_in_history(const Past* past, const TemporalTileParam
 }
 
 #if LAYERS
+// Whether sample (x, y) has two layers.
+static inline bool is_split_at(const TemporalTileParams* params, __global const float* reprojection, int x, int y) {
+  return is_split(reprojection[4 * texel_index(params->reprojection, x, y) + 3]);
+}
+
 // Returns which samples show the far layer, or the only one: history that is judged knows nothing of a near one.
 static inline LaneMask are_of_far_layer(const Past* past, DEPTH_TEXELS depth, TexelLayout layout,
                                         const TemporalTileParams* params, LaneInt columns, int y) {
   LaneFloat far = 0.0f;
   for (int lane = 0; lane < kLanes; ++lane) {
-    const LayerSplit split = past->splits[y * params->frame.width + FIRST_LANE(columns)];
-    const bool is_far = !is_split(split) || load_depth(depth, layout, FIRST_LANE(columns), y) < between_of(split);
+    const int x = FIRST_LANE(columns);
+    bool is_far = true;
+    if (is_split_at(params, past->reprojection, x, y))
+      is_far = load_depth(depth, layout, x, y) < between_of(past->splits[y * params->frame.width + x]);
     FIRST_LANE(far) = is_far ? 1.0f : 0.0f;
     far = NEXT_LANES(far);
     columns = NEXT_LANES(columns);

@@ -2,6 +2,7 @@
 // The reprojection of output pixels of a row: that of the sample nearest to each.
 #pragma once
 
+#include "layers/layer.h"
 #include "motion/motion_edge.h"
 #include "temporal/frame_samples.h"
 #include "texel.h"
@@ -9,11 +10,13 @@
 // As Reprojection, but in output pixels; trust is never NaN, and a motion edge of either frame is positive.
 typedef struct Reprojections {
   LaneFloat x, y, trust, motion_edge;
+  LaneMask is_split;  // samples with two layers
 } Reprojections;
 
 // Returns the reprojection of pixels that stand still.
 static inline Reprojections no_motion(void) {
-  const Reprojections none = {(LaneFloat)(0.0f), (LaneFloat)(0.0f), (LaneFloat)(1.0f), (LaneFloat)(0.0f)};
+  const Reprojections none = {(LaneFloat)(0.0f), (LaneFloat)(0.0f), (LaneFloat)(1.0f), (LaneFloat)(0.0f),
+                              mask_of(false)};
   return none;
 }
 
@@ -26,6 +29,7 @@ static inline Reprojections load_reprojections(const TemporalParams* params, __g
   found.x = own.x * params->motion_x;
   found.y = own.y * params->motion_y;
   found.motion_edge = fabs(own.w);
+  found.is_split = as_lane_int(own.w) == SPLIT_MOTION_EDGE_BITS;
   found.trust = fmax(own.z, (LaneFloat)(0.0f));  // NaN is none
   return found;
 }
