@@ -125,7 +125,7 @@ static inline void store_view(OUTPUT_TEXELS output, TexelLayout layout, int x, i
 #define MAY_BE_PLAIN true
 #endif
 
-enum { kPlainAhead = 6 * kTemporalTile };  // texels to prefetch
+enum { kPlainAhead = 6 * kTemporalTile, kColourAhead = 24 };  // texels and samples to prefetch
 
 // Adds samples to pixels on the path kCopiedPlain, from (x, y) on. Returns false, and stores nothing, where too
 // little is known of one, or a sample is bright or not finite.
@@ -186,6 +186,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     for (int y = first_y; y < end_y; ++y) {
       // Reproject.
       const NearestSamples nearest = in_row(&params, columns, row_position(&params, positions, y), tile);
+      will_read_colour(colour, frame.colour, FIRST_LANE(nearest.x) + kColourAhead, nearest.y);
       const TilePath path =
           path_of_row(rows, previous_tiles, &params, reactive0, reactive1, &nearest, tile, tile_x, y);
       if (path == kCopiedPlain && resolve_plain_row(&params, colour, &frame, layer, tile, &nearest, updated, x, y))
