@@ -175,10 +175,10 @@ __kernel void display_layers(const TemporalDisplayParams params, const HistorySa
                              HISTORY_TEXELS alpha, HISTORY_TEXELS near_history, __global const half* states,
                              OUTPUT_TEXELS output, __global const Exposure* exposure) {
   const int all = params.tiles_x * ((params.output_height + kTemporalTile - 1) / kTemporalTile);
-  const int end = (VIEW == PICTURE ? total->layered : all) * kRunsOfTile;
+  const ItemRuns runs = runs_of_item(VIEW == PICTURE ? total->layered : all);
   const PastLayers known =
       past_layers(params.output_width, params.output_height, now, history, alpha, near_history, states, tiles, layers);
-  for (int run = first_run(); run < end; run = next_run(run)) {
+  for (int run = runs.first; run < runs.end; run += runs.step) {
     const int tile = VIEW == PICTURE ? listed[run / kRunsOfTile] : run / kRunsOfTile;
     const LayerTile layer = layers[tile];
     if (VIEW == PICTURE && !layer.is_split) continue;

@@ -55,13 +55,13 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
                              __global const TotalLight* total, STORED_HISTORY updated, STORED_HISTORY updated_alpha,
                              STORED_HISTORY updated_near, __global half* updated_states, __global uint* non_finite,
                              __global const Exposure* exposure) {
-  const int end = total->layered * kRunsOfTile;
+  const ItemRuns runs = runs_of_item(total->layered);
   const ExposedFrame frame = expose(params.frame0, exposure);
   const PastLayers past = past_layers(params.output_width, params.output_height, before, history, alpha, near_history,
                                       states, previous_tiles, previous_layers);
   const SampleMotion sample_motion = {reprojection, params.reprojection, params.motion_x, params.motion_y};
   uint met_count = 0;
-  for (int run = first_run(); run < end; run = next_run(run)) {
+  for (int run = runs.first; run < runs.end; run += runs.step) {
     const int tile_index = listed[run / kRunsOfTile];
     const int2 pixel = pixel_of_run(run, tile_index, params.tiles_x);
     const int x = pixel.x, y = pixel.y, count = min(params.output_width - x, (int)kLanes);
@@ -72,6 +72,7 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
 
     // The far layers, or the only ones.
     const NearestSamples nearest = find_nearest_samples(&params, positions, x, row, tile);
+    will_read_samples(&params, colour, reprojection, depth, depth_layout, open_trust, splits, &nearest);
     Reprojections motion = load_reprojections(&params, reprojection, &nearest);
     const LayeredPixels pixels =
         find_layers(depth, depth_layout, &params, splits, open_trust, &nearest, motion.is_split);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How work-items share the tiles of a list among them. A *run* is as many pixels of a row as an item makes at once.
-// With eight lanes an item takes all runs of a tile, and then another tile. With one, items side by side take runs side
+// With eight lanes an item takes tiles that follow each other in the list. With one, items side by side take runs side
 // by side.
 #pragma once
 
@@ -8,15 +8,22 @@
 #include "temporal/tile.h"
 
 enum { kRunsOfRow = kTemporalTile / kLanes, kRunsOfTile = kRunsOfRow * kTemporalTile };
-enum { kRunsInTurn = kLanes == 1 ? 1 : kRunsOfTile };  // that an item takes before those of the other items
 
-static inline int first_run(void) {
-  return get_global_id(0) * kRunsInTurn;
-}
+// The runs of a work-item: `first`, `first` + `step` and so on, before `end`.
+typedef struct ItemRuns {
+  int first, end, step;
+} ItemRuns;
 
-static inline int next_run(int run) {
-  const int next = run + 1;
-  return next % kRunsInTurn != 0 ? next : next + ((int)get_global_size(0) - 1) * kRunsInTurn;
+// Returns this item's part of those of so many tiles.
+static inline ItemRuns runs_of_item(int tiles) {
+  const int item = get_global_id(0), items = get_global_size(0);
+#if LANES == 8
+  const int most = (tiles + items - 1) / items;
+  const ItemRuns runs = {min(item * most, tiles) * kRunsOfTile, min((item + 1) * most, tiles) * kRunsOfTile, 1};
+#else
+  const ItemRuns runs = {item, tiles * kRunsOfTile, items};
+#endif
+  return runs;
 }
 
 // Returns the first pixel of a run in a tile of a picture of `tiles_x` tiles in a row.

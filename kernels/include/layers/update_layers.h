@@ -26,6 +26,24 @@ typedef struct LayeredPixels {
   LaneFloat open_trust;
 } LayeredPixels;
 
+enum { kSamplesAhead = 8 };  // to prefetch of four-channel values; twice as many of others
+
+// What is known of the samples beyond those of a tile's row is read soon: the next tile of the list is most often the
+// next one of the picture.
+static inline void will_read_samples(const TemporalParams* params, COLOUR_TEXELS colour,
+                                     __global const float* reprojection, DEPTH_TEXELS depth, TexelLayout layout,
+                                     __global const float* open_trust, __global const LayerSplit* splits,
+                                     const NearestSamples* nearest) {
+  const int x = FIRST_LANE(nearest->x) + kSamplesAhead, y = nearest->y;
+  WILL_READ(splits + y * params->frame0.width + x);
+  WILL_READ(reprojection + 4 * texel_index(params->reprojection, x, y));
+  WILL_READ(open_trust + y * params->frame0.width + x + kSamplesAhead);
+  will_read_colour(colour, params->frame0.colour, x + kSamplesAhead, y);
+#if SOURCE_STORAGE == BUFFER
+  WILL_READ(depth + texel_index(layout, x + kSamplesAhead, y));
+#endif
+}
+
 static inline LayeredPixels find_layers(DEPTH_TEXELS depth, TexelLayout layout, const TemporalParams* params,
                                         __global const LayerSplit* splits, __global const float* open_trust,
                                         const NearestSamples* nearest, LaneMask is_split) {
