@@ -38,7 +38,7 @@ LIGHT, JUDGE = "temporal/temporal_light.cl", "include/temporal/judge_samples.h"
 RULES = {
     "relighting of 3x3 tiles": [(LIGHT, "const bool is_local = changes &&", "const bool is_local = false &&")],
     "… only where seven of ten samples agree": [
-        (LIGHT, "change.is_agreed = sum.brighter * change.direction > RELIGHT_MAJORITY_MIN * sum.count;",
+        (LIGHT, "change.is_agreed = around->brighter * change.direction > RELIGHT_MAJORITY_MIN * around->count;",
          "change.is_agreed = true;")],
     "… only away from motion edges": [
         (LIGHT, "return !around->has_motion_edge && change->is_agreed", "return change->is_agreed")],
@@ -56,15 +56,16 @@ RULES = {
         (LIGHT, "const float by_cut = is_widespread && !relit ?", "const float by_cut = false && is_widespread && !relit ?")],
     "judging of cells": [(LIGHT, "if (!is_local && any(asked)) {", "if (false) {")],
     "… that change by more than they flicker": [
-        (LIGHT, "const int4 asked = changed > FLICKER_RATIO_MIN * OF_CELLS(tile.cells, flicker);",
-         "const int4 asked = (int4)(-1);")],
+        (LIGHT, "> max(JUDGED_CHANGE_MIN, FLICKER_RATIO_MIN * cells.flicker);", "> JUDGED_CHANGE_MIN;")],
+    "… that change at all": [
+        (LIGHT, "> max(JUDGED_CHANGE_MIN, FLICKER_RATIO_MIN * cells.flicker);", "> FLICKER_RATIO_MIN * cells.flicker;")],
     "rigid tiles wait for a second frame": [
-        (LIGHT, "const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
+        (LIGHT, "const bool waits = way.is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
          "const bool waits = false;")],
     "… unless one was confirmed lately": [
-        (LIGHT, "const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
-         "const bool waits = tiles[i].is_rigid;")],
-    "outliers are held back": [(LIGHT, "tile.holds_back = around.sum.outliers > 0.0f &&", "tile.holds_back = false &&")],
+        (LIGHT, "const bool waits = way.is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
+         "const bool waits = way.is_rigid;")],
+    "outliers are held back": [(LIGHT, "tile.holds_back = around.outliers > 0.0f &&", "tile.holds_back = false &&")],
     "… only the first of late": [(LIGHT, "around.recent_outliers < OUTLIER_REARM_MAX", "true")],
 }
 

@@ -250,18 +250,17 @@ def force(path, text, count, rejection):
             ("static inline float4 judge(const float4* inputs) {",
              "static inline float4 judge(const float4* inputs, int4 cells) {" + prints),
             ("return judge(inputs);", "return judge(inputs, cells);"),
-            ("const TileEvidence* tile, const TileEvidence* tiles) {",
-             "const TileEvidence* tile, const TileEvidence* tiles, int4 cells) {"),
-            ("own, &around.sum);",
-             "own, &around.sum, select((int4)(-1), 2 * (y * %d + x) + (int4)(0, 1, %d, %d), asked & -(int)forced));"
+            ("const EvidenceAround* tiles) {", "const EvidenceAround* tiles, int4 cells) {"),
+            ("own, &around);",
+             "own, &around, select((int4)(-1), 2 * (y * %d + x) + (int4)(0, 1, %d, %d), asked & -(int)forced));"
              % (SIZE[0] // CELL, SIZE[0] // CELL, SIZE[0] // CELL + 1)),
-            ("const TileLight before = remember(previous, tiles[i], tiles_x, tiles_y, x, y);",
-             "TileLight before = remember(previous, tiles[i], tiles_x, tiles_y, x, y);\n"
+            ("const TileLight before = previous[from_y * tiles_x + from_x];",
+             "TileLight before = previous[from_y * tiles_x + from_x];\n"
              "  const float number = floor(0.5f * previous[i].confirmation);\n"
              "  before.confirmation = fmod(before.confirmation, 2.0f);\n"
              "  const bool forced = number == %d, kept = number >= %d;" % (count - 1, count - 1)),
-            ("max(around.confirmation, previous[i].confirmation)",
-             "max(around.confirmation, fmod(previous[i].confirmation, 2.0f))"),
+            ("vload2(0, &previous[i].confirmation)",
+             "(float2)(fmod(previous[i].confirmation, 2.0f), previous[i].recent_outliers)"),
             ("  return tile;\n}\n\n__kernel",
              "  if (kept) {\n    tile.rejection = forced ? %.1ff : 0.0f;\n    for (int c = 0; c < 4; ++c)\n"
              "      tile.cells[c].rejection = tile.rejection;\n  }\n"
