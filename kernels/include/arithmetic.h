@@ -13,6 +13,12 @@
 #define MULTIPLY_ADD(a, b, c) ((a) * (b) + (c))
 #endif
 
+// Rounds towards minus infinity what an int can hold. PoCL's floor() of one or two floats takes branches.
+static inline int2 floor2(float2 value) {
+  const int2 whole = convert_int2(value);
+  return whole + (convert_float2(whole) > value);
+}
+
 // (1 - t / 8)^8: close to exp(-t), without its cost, and 0 from t = 8 on.
 #define DEFINE_BELL(name, type)                      \
   static inline type name(type t) {                  \

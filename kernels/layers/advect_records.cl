@@ -12,7 +12,7 @@
 
 // Finds the cell of this frame's grid that holds a place in output pixels. Returns whether there is one.
 static inline bool find_cell(const LayerParams* params, float2 place, int* cell) {
-  const float2 at = floor(among_samples(params, place) + 0.5f);
+  const float2 at = among_samples(params, place) + 0.5f;
   if (!(at.x >= 0.0f && at.y >= 0.0f && at.x < (float)params->width && at.y < (float)params->height)) return false;
   *cell = (int)at.y * params->width + (int)at.x;
   return true;

@@ -65,12 +65,12 @@ static inline bool is_marked(const TemporalTileParams* params, __global const in
 static inline bool was_split(const TemporalTileParams* params, __global const LayerTile* previous, float2 from,
                              float2 to) {
   const float2 most = (float2)((float)params->tiles_x, (float)params->tiles_y) - 1.0f;
-  const float2 first = clamp(floor(from / (float)kTemporalTile), 0.0f, most);
-  const float2 last = clamp(floor(to / (float)kTemporalTile), 0.0f, most);
-  if (last.x - first.x > (float)SOURCE_TILES_MAX || last.y - first.y > (float)SOURCE_TILES_MAX) return true;
+  const int2 first = convert_int2(clamp(from / (float)kTemporalTile, 0.0f, most));
+  const int2 last = convert_int2(clamp(to / (float)kTemporalTile, 0.0f, most));
+  if (last.x - first.x > SOURCE_TILES_MAX || last.y - first.y > SOURCE_TILES_MAX) return true;
   int any = 0;
-  for (int y = (int)first.y; y <= (int)last.y; ++y) {
-    for (int x = (int)first.x; x <= (int)last.x; ++x) any |= previous[y * params->tiles_x + x].is_split;
+  for (int y = first.y; y <= last.y; ++y) {
+    for (int x = first.x; x <= last.x; ++x) any |= previous[y * params->tiles_x + x].is_split;
   }
   return any != 0;
 }
@@ -231,40 +231,47 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
   const float change = exposure->change;
   TotalLight sum = {0, 0, 0, 0, 0, {{0}}};
   PartLag lag = {-1, {0, 0, 0, 0}};
-  const Past past = {reprojection, {history, params.output_width, params.output_height}, previous_tiles, splits, change};
+  const HistoryLayer known = {history, params.output_width, params.output_height};
+  const Past past = {reprojection, known, previous_tiles, splits, change};
   for (int left = first * kTilesAtOnce; left < params.tiles_x; left += (int)get_global_size(0) * kTilesAtOnce) {
     JudgedTile found[kTilesAtOnce];
     int2 rows = (int2)(0, -1);
     for (int side = 0; side < kTilesAtOnce; ++side) {
-      const JudgedTile none = {(int2)(0, -1), false, {.is_rigid = 1, .is_trusted = 1}, no_evidence()};
-      JudgedTile* tile = &found[side];
-      *tile = none;
+      const JudgedTile none = {(int2)(0, -1), false, {.is_rigid = 1, .is_trusted = 1}};
+      found[side] = none;
       const int tile_x = left + side, i = tile_y * params.tiles_x + tile_x;
       if (tile_x >= params.tiles_x) continue;
       const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
       const SampleRange samples = samples_in_tile(&params, corner);
-      bool hidden = false;
+      TileReprojection tile = none.reprojection;
+      bool hidden = false, is_split = false;
 #if MOTION
       const ReprojectionRange range = range_of(reprojection, params.reprojection, widened(&params, samples));
-      tile->reprojection = reproject_tile(&params, range, previous_tiles, corner);
+      tile = reproject_tile(&params, range, previous_tiles, corner);
 #endif
 #if LAYERS
       const LayerInputs in = {depth_layout, reprojection, splits, marks, previous_layers};
-      const LayerTile own = layer_tile(&params, depth, &in, samples, range, (int2)(tile_x, tile_y), corner,
-                                       previous_tiles, &tile->reprojection, &hidden);
+      const LayerTile own =
+          layer_tile(&params, depth, &in, samples, range, (int2)(tile_x, tile_y), corner, previous_tiles, &tile, &hidden);
       layers[i] = own;
       if (own.is_layered) listed[atomic_inc(&total->layered)] = i;
-      tile->is_split = own.is_split;
+      is_split = own.is_split;
 #endif
-      tiles[i] = tile->reprojection;
+      tiles[i] = tile;
       rows = (int2)(samples.first.y, samples.last.y);
-      if (!hidden) tile->columns = (int2)(samples.first.x, samples.last.x);
+      const JudgedTile judged = {(int2)(samples.first.x, samples.last.x), is_split, tile};
+      if (!hidden) found[side] = judged;
     }
-    judge_tiles(found, colour, &frame, depth, depth_layout, &past, &params, rows);
-    for (int side = 0; side < kTilesAtOnce && left + side < params.tiles_x; ++side) {
-      add_means(&sum, &params, found[side].evidence);
-      add_lag(&lag, total, &params, found[side].evidence, left + side, tile_y);
-      evidence[tile_y * params.tiles_x + left + side] = found[side].evidence;
+    TileEvidence said[kTilesAtOnce];
+    UNROLL_ALWAYS(kTilesAtOnce)
+    for (int side = 0; side < kTilesAtOnce; ++side) said[side] = no_evidence();
+    judge_tiles(said, found, colour, &frame, depth, depth_layout, &past, &params, rows);
+    UNROLL_ALWAYS(kTilesAtOnce)  // an index would put the evidence in memory
+    for (int side = 0; side < kTilesAtOnce; ++side) {
+      if (left + side >= params.tiles_x) continue;
+      add_means(&sum, &params, said[side]);
+      add_lag(&lag, total, &params, said[side], left + side, tile_y);
+      evidence[tile_y * params.tiles_x + left + side] = said[side];
     }
   }
   flush_lag(total, lag);

@@ -114,16 +114,17 @@ static inline LayerSources find_sources(const PastLayers* past, DEPTH_TEXELS dep
                     (y < -0.5f) | (y > (float)past->far.height - 0.5f);
   from.was_split &= mask_not(from.is_outside);
   if (is_rigid) {
-    const LaneFloat nearest_x = floor(x + 0.5f), nearest_y = floor(y + 0.5f);
+    const LaneFloat nearest_x = to_lane_float(floor_lanes(x + 0.5f));
+    const LaneFloat nearest_y = to_lane_float(floor_lanes(y + 0.5f));
     const LaneMask copied = (fabs(x - nearest_x) < COPIED_OFFSET_MAX) & (fabs(y - nearest_y) < COPIED_OFFSET_MAX);
     x = select(x, nearest_x, copied);
     y = select(y, nearest_y, copied);
   }
-  const LaneFloat base_x = floor(x), base_y = floor(y);
-  from.x = to_lane_int(base_x) - 1;
-  from.y = to_lane_int(base_y) - 1;
-  from.fraction_x = x - base_x;
-  from.fraction_y = y - base_y;
+  const LaneInt base_x = floor_lanes(x), base_y = floor_lanes(y);
+  from.x = base_x - 1;
+  from.y = base_y - 1;
+  from.fraction_x = x - to_lane_float(base_x);
+  from.fraction_y = y - to_lane_float(base_y);
   return from;
 }
 

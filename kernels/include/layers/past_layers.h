@@ -4,6 +4,7 @@
 // edge.
 #pragma once
 
+#include "arithmetic.h"
 #include "bits.h"
 #include "layers/layer.h"
 #include "temporal/fetch_history.h"
@@ -96,8 +97,8 @@ static inline LayerState state_at(const PastLayers* past, DEPTH_TEXELS depth, in
   const float2 start = (float2)(samples.start_x, samples.start_y);
   const float2 spacing = (float2)(samples.spacing_x, samples.spacing_y);
   const float2 place = (float2)((float)x + 0.5f, (float)y + 0.5f) + phase_of(past, tile, kFarLayer);
-  const float2 at = floor((place - start) / spacing + 0.5f);
-  const int column = clamp((int)at.x, 0, samples.width - 1), row = clamp((int)at.y, 0, samples.height - 1);
+  const int2 at = floor2((place - start) / spacing + 0.5f);
+  const int column = clamp(at.x, 0, samples.width - 1), row = clamp(at.y, 0, samples.height - 1);
   const LayerState state = {load_depth(depth, samples.depth, column, row), 0.0f, 0.0f, 0.0f};
   return state;
 }

@@ -5,6 +5,7 @@
 // from the first cell is the largest. So atomic maxima of keys give the same grid in whatever order records come.
 #pragma once
 
+#include "arithmetic.h"
 #include "bits.h"
 #include "layers/constants.h"
 #include "layers/layer.h"
@@ -64,7 +65,7 @@ typedef struct CellRange {
 
 // Returns the cells of a grid of `extent` at most `reach` from the one that holds `at`, counted in samples.
 static inline CellRange cells_around(float2 at, int reach, int2 extent) {
-  const int2 middle = convert_int2(clamp(floor(at + 0.5f), -8.0f, 65536.0f));
+  const int2 middle = floor2(clamp(at + 0.5f, -8.0f, 65536.0f));
   const CellRange range = {max(middle - reach, (int2)(0)), min(middle + reach, extent - 1)};
   return range;
 }

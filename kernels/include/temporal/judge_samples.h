@@ -36,7 +36,6 @@ typedef struct JudgedTile {
   int2 columns;  // of its samples, first and last; none is judged if first > last
   bool is_split;
   TileReprojection reprojection;
-  TileEvidence evidence;
 } JudgedTile;
 
 // ---- Where samples are in history.
@@ -339,7 +338,7 @@ static inline LaneMask are_between(LaneInt columns, int2 range) {
 
 // Adds what two tiles' samples in columns from `first` on say, as far as they lie in those of `left` and of `right`: in
 // kLanes of them if it loads the samples beside those, else in two less.
-static inline void judge_columns(JudgedTile* tiles, COLOUR_TEXELS colour, const ExposedFrame* frame,
+static inline void judge_columns(TileEvidence* evidence, const JudgedTile* tiles, COLOUR_TEXELS colour, const ExposedFrame* frame,
                                  DEPTH_TEXELS depth, TexelLayout depth_layout, const Past* past,
                                  const TemporalTileParams* params, int2 rows, int2 left, int2 right, int first,
                                  bool loads_beside) {
@@ -375,12 +374,12 @@ static inline void judge_columns(JudgedTile* tiles, COLOUR_TEXELS colour, const 
     beside = next_beside(&beside);
   }
   const LaneMask in_left_cells = to_lane_int(place_x) % kTemporalTile < kTemporalCell;
-  add_rows(&tiles[0].evidence, &sum, of_left & in_left_cells, of_left & mask_not(in_left_cells));
-  add_rows(&tiles[1].evidence, &sum, of_right & in_left_cells, of_right & mask_not(in_left_cells));
+  add_rows(&evidence[0], &sum, of_left & in_left_cells, of_left & mask_not(in_left_cells));
+  add_rows(&evidence[1], &sum, of_right & in_left_cells, of_right & mask_not(in_left_cells));
 }
 
-// Finds what the samples of two tiles, in the same rows, say of history.
-static inline void judge_tiles(JudgedTile* tiles, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
+// Adds what the samples of two tiles, in the same rows, say of history.
+static inline void judge_tiles(TileEvidence* evidence, const JudgedTile* tiles, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
                                TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
                                int2 rows) {
   const int2 none = (int2)(0, -1);
@@ -393,16 +392,15 @@ static inline void judge_tiles(JudgedTile* tiles, COLOUR_TEXELS colour, const Ex
     const int first = left.x <= left.y ? left.x : right.x, last = max(left.y, right.y), count = last - first + 1;
     const bool loads_beside = params->parity < 0 && (count + kLanes - 1) / kLanes < (count + fewer - 1) / fewer;
     for (int x = first; x <= last; x += loads_beside ? kLanes : fewer)
-      judge_columns(tiles, colour, frame, depth, depth_layout, past, params, rows, left, right, x, loads_beside);
+      judge_columns(evidence, tiles, colour, frame, depth, depth_layout, past, params, rows, left, right, x, loads_beside);
   }
 }
 #else
 // Adds what the tile's samples in column x say.
-static inline void judge_column(JudgedTile* tile, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
+static inline void judge_column(TileEvidence* evidence, const JudgedTile* tile, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
                                 TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
                                 int2 rows, int x) {
   const WayBack way = way_back(tile);
-  TileEvidence* evidence = &tile->evidence;
   const int aside = params->parity >= 0 ? 1 : 0;  // the shaded neighbours on a checkerboard are the diagonal ones
   const float place_x = (float)x * params->spacing_x + params->start_x;
   for (int y = rows.x; y <= rows.y; ++y) {
@@ -445,12 +443,12 @@ static inline void judge_column(JudgedTile* tile, COLOUR_TEXELS colour, const Ex
   }
 }
 
-// Finds what the samples of a tile say of history.
-static inline void judge_tiles(JudgedTile* tile, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
+// Adds what the samples of a tile say of history.
+static inline void judge_tiles(TileEvidence* evidence, const JudgedTile* tile, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
                                TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
                                int2 rows) {
   for (int x = tile->columns.x; x <= tile->columns.y; ++x)
-    judge_column(tile, colour, frame, depth, depth_layout, past, params, rows, x);
+    judge_column(evidence, tile, colour, frame, depth, depth_layout, past, params, rows, x);
 }
 #endif
 

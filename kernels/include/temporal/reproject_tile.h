@@ -2,6 +2,7 @@
 // The samples of a tile, and the reprojection of the whole tile if they move alike.
 #pragma once
 
+#include "arithmetic.h"
 #include "motion/motion_edge.h"
 #include "temporal/constants.h"
 #include "temporal/temporal_params.h"
@@ -29,14 +30,15 @@ static inline float2 without_rounding(float2 motion) {
 
 // How texels follow their motion: by a step of whole texels, and by a phase that takes up the rest.
 typedef struct PhaseStep {
-  float2 step, phase;
+  int2 step;
+  float2 phase;
 } PhaseStep;
 
 // Follows `motion` from texels of the phase `source`.
 static inline PhaseStep carry_phase(float2 source, float2 motion) {
   const float2 place = source - motion;
-  const float2 step = floor(place + 0.5f);
-  const PhaseStep carried = {step, place - step};
+  const int2 step = floor2(place + 0.5f);
+  const PhaseStep carried = {step, place - convert_float2(step)};
   return carried;
 }
 
@@ -46,8 +48,8 @@ static inline void take_phase(TileReprojection* tile, float2 source, float2 moti
   tile->source_phase_y = source.y;
   tile->phase_x = carried.phase.x;
   tile->phase_y = carried.phase.y;
-  tile->step_x = (int)carried.step.x;
-  tile->step_y = (int)carried.step.y;
+  tile->step_x = carried.step.x;
+  tile->step_y = carried.step.y;
 }
 
 // The samples from `first` to `last`, each a column and a row.
@@ -60,8 +62,9 @@ static inline SampleRange samples_in_tile(const TemporalTileParams* params, floa
   const int2 limit = (int2)(params->frame.width - 1, params->frame.height - 1);
   const float2 spacing = (float2)(params->spacing_x, params->spacing_y);
   const float2 start = (float2)(params->start_x, params->start_y);
-  const int2 first = clamp(convert_int2(ceil((corner - start) / spacing)), (int2)(0), limit);
-  const int2 last = clamp(convert_int2(ceil((corner + (float)kTemporalTile - start) / spacing)) - 1, first, limit);
+  // The first at or beyond an edge.
+  const int2 first = clamp(-floor2((start - corner) / spacing), (int2)(0), limit);
+  const int2 last = clamp(-floor2((start - (corner + (float)kTemporalTile)) / spacing) - 1, first, limit);
   const SampleRange range = {first, last};
   return range;
 }
