@@ -72,7 +72,8 @@ __kernel void check_motion(const MotionCheckParams params, VELOCITY_TEXELS veloc
       const float2 reach = fabs(moved);
       const bool moves_x = reach.x >= LEAST_SPEED, moves_y = reach.y >= LEAST_SPEED;
       if (!moves_x && !moves_y) continue;
-      const float2 still = (float2)((float)x * params.step_x + params.start_x, (float)y * params.step_y + params.start_y);
+      const float2 still = (float2)((float)x * params.step_x + params.start_x,
+                                    (float)y * params.step_y + params.start_y);
       if (any(still - reach < (float2)(0.0f)) || any(still + reach > last)) continue;
       const float now = soft_luma(colour0, params.colour0, params.width, params.height, (float2)((float)x, (float)y));
       const float4 errors = (float4)(error_at(&params, colour1, now, still + moved),

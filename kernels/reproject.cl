@@ -64,46 +64,51 @@
 
 #define NAN_BITS 0x7fc00000
 
-// Towards minus infinity, of less than 2^24.
-static inline int4 floor_of(float4 value) {
-  const int4 whole = convert_int4(value);
-  return whole + (convert_float4(whole) > value);
-}
-
 // 1 inside [low, low + length], 0 from a pixel away on.
-static inline float4 inside_of(float4 at, float low, float length) {
+static inline LaneFloat inside_of(LaneFloat at, float low, float length) {
   return clamp(1.0f - max(low - at, at - (low + length)), 0.0f, 1.0f);
 }
 
-static inline int8 both_axes(int4 lanes) {
-  return (int8)(lanes.s0, lanes.s0, lanes.s1, lanes.s1, lanes.s2, lanes.s2, lanes.s3, lanes.s3);
+#if LANES == 8
+// As float4s: halves of wide vectors would be put together by permutations that take longer.
+static inline void store_four(__global float* reprojection, float4 x, float4 y, float4 trust, float4 motion_edge) {
+  vstore4((float4)(x.s0, y.s0, trust.s0, motion_edge.s0), 0, reprojection);
+  vstore4((float4)(x.s1, y.s1, trust.s1, motion_edge.s1), 1, reprojection);
+  vstore4((float4)(x.s2, y.s2, trust.s2, motion_edge.s2), 2, reprojection);
+  vstore4((float4)(x.s3, y.s3, trust.s3, motion_edge.s3), 3, reprojection);
 }
+#endif
 
-static inline int4 non_finite_velocity(float8 velocity) {
-  return non_finite_lanes(velocity.even) | non_finite_lanes(velocity.odd);
-}
-
-// Reprojection of four samples.
-typedef struct FourReprojections {
-  float4 x, y, trust, motion_edge;
-} FourReprojections;
-
-// The first `count` of four.
-static inline void store_reprojections(__global float* reprojection, int index, int count, FourReprojections r) {
-  __global float* first = reprojection + 4 * index;
-  vstore4((float4)(r.x.s0, r.y.s0, r.trust.s0, r.motion_edge.s0), 0, first);
-  if (count > 1) vstore4((float4)(r.x.s1, r.y.s1, r.trust.s1, r.motion_edge.s1), 1, first);
-  if (count > 2) vstore4((float4)(r.x.s2, r.y.s2, r.trust.s2, r.motion_edge.s2), 2, first);
-  if (count > 3) vstore4((float4)(r.x.s3, r.y.s3, r.trust.s3, r.motion_edge.s3), 3, first);
+// Stores the first `count`.
+static inline void store_reprojections(__global float* reprojection, int count, LaneFloat2 motion, LaneFloat trust,
+                                       LaneFloat motion_edge) {
+#if LANES == 8
+  if (count >= kLanes) {
+    store_four(reprojection, motion.x.lo, motion.y.lo, trust.lo, motion_edge.lo);
+    store_four(reprojection + 16, motion.x.hi, motion.y.hi, trust.hi, motion_edge.hi);
+    return;
+  }
+#endif
+  LaneTexels texels = texels_of(motion.x, motion.y, trust, motion_edge);
+  for (int i = 0; i < count; ++i) {
+    vstore4(first_texel(texels), i, reprojection);
+    texels = push_texel(texels, first_texel(texels));
+  }
 }
 
 #if OPEN_TRUST
-// The first `count` of four.
-static inline void store_floats(__global float* floats, int count, float4 value) {
-  floats[0] = value.s0;
-  if (count > 1) floats[1] = value.s1;
-  if (count > 2) floats[2] = value.s2;
-  if (count > 3) floats[3] = value.s3;
+// The same.
+static inline void store_floats(__global float* floats, int count, LaneFloat values) {
+#if LANES == 8
+  if (count >= kLanes) {
+    vstore8(values, 0, floats);
+    return;
+  }
+#endif
+  for (int i = 0; i < count; ++i) {
+    floats[i] = FIRST_LANE(values);
+    values = NEXT_LANES(values);
+  }
 }
 #endif
 
@@ -123,68 +128,72 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
                         __global const float* previous_reprojection, __global float* reprojection,
                         __global float* open_trust) {
   const int y = get_global_id(1);
-  const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kBlock);
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kLanes);
   if (item.first >= item.end || y >= params.height) return;
 
   const float row = (float)y * params.step_y + params.start_y;
-  const int4 last_x = max(params.previous_width - 2, 0);
-  const int4 last_y = max(params.previous_height - 2, 0);
+  const LaneInt first = (LaneInt)(0);
+  const LaneInt last_x = (LaneInt)(max(params.previous_width - 2, 0));
+  const LaneInt last_y = (LaneInt)(max(params.previous_height - 2, 0));
   for (int x = item.first; x < item.end; x += item.step) {
-    const int count = pixels_from(item, x);  // one lane asks for one of four; compilers drop the work for the others
+    const int count = pixels_from(item, x);
     will_read_below(&params, velocity0, depth0, x, y);
-    WILL_WRITE(reprojection + 4 * (texel_index(params.reprojection, x, y) + kReprojectionAhead));
-    const float4 depth = load_depth_block(depth0, params.depth0, x, y, params.width);
-    const float8 input = load_velocity_block(velocity0, params.velocity0, x, y, params.width);
-    int4 lost = non_finite_lanes(depth) | non_finite_velocity(input);
-    const float8 velocity = as_float8(select(as_int8(input), (int8)(0), both_axes(lost)));
+    const int index = texel_index(params.reprojection, x, y);
+    WILL_WRITE(reprojection + 4 * (index + kReprojectionAhead));
+    WILL_WRITE(reprojection + 4 * (index + kReprojectionAhead + 4));
+    const LaneFloat depth = load_depth_row(depth0, params.depth0, x, y, params.width);
+    const LaneFloat2 input = load_velocity_row(velocity0, params.velocity0, x, y, params.width);
+    const LaneFloat none = (LaneFloat)(0.0f);
+    LaneInt largest = max(magnitude_bits(depth), max(magnitude_bits(input.x), magnitude_bits(input.y)));
+    const LaneFloat2 velocity = {select(input.x, none, largest >= NON_FINITE_BITS),
+                                     select(input.y, none, largest >= NON_FINITE_BITS)};
 
     // Reproject.
-    FourReprojections found;
-    found.x = clamp(velocity.even * params.motion_x, -FINITE_HALF_MAX, FINITE_HALF_MAX);
-    found.y = clamp(velocity.odd * params.motion_y, -FINITE_HALF_MAX, FINITE_HALF_MAX);
-    const float4 at_x = convert_float4(x + (int4)(0, 1, 2, 3)) * params.step_x + params.start_x + found.x;
-    const float4 at_y = row + found.y;
+    const LaneFloat2 motion = {clamp(velocity.x * params.motion_x, -FINITE_HALF_MAX, FINITE_HALF_MAX),
+                               clamp(velocity.y * params.motion_y, -FINITE_HALF_MAX, FINITE_HALF_MAX)};
+    const LaneFloat at_x = to_lane_float(x + LANE_NUMBERS) * params.step_x + params.start_x + motion.x;
+    const LaneFloat at_y = row + motion.y;
 
     // Compare depths.
-    const float4 limit = nearest_of_same(&params, depth0, x, y, depth);
-    const DepthRange before = previous_depths(&params, depth1, clamp(floor_of(at_x), (int4)(0), last_x),
-                                              clamp(floor_of(at_y), (int4)(0), last_y));
+    const LaneFloat limit = nearest_of_same(&params, depth0, x, y, depth);
+    const DepthRanges before = previous_depths(&params, depth1, clamp(floor_lanes(at_x), first, last_x),
+                                               clamp(floor_lanes(at_y), first, last_y));
 
     // Trust what was on the screen, not reactive, and moved alike.
-    float4 trust = inside_of(at_x, params.edge_x, (float)params.previous_width) *
-                   inside_of(at_y, params.edge_y, (float)params.previous_height);
+    LaneFloat trust = inside_of(at_x, params.edge_x, (float)params.previous_width) *
+                      inside_of(at_y, params.edge_y, (float)params.previous_height);
 #if REACTIVE || RESIDUAL || MOTION_EDGE
-    const int4 nearest_x = clamp(floor_of(at_x + 0.5f), (int4)(0), (int4)(params.previous_width - 1));
-    const int4 nearest_y = clamp(floor_of(at_y + 0.5f), (int4)(0), (int4)(params.previous_height - 1));
+    const LaneInt nearest_x = clamp(floor_lanes(at_x + 0.5f), first, (LaneInt)(params.previous_width - 1));
+    const LaneInt nearest_y = clamp(floor_lanes(at_y + 0.5f), first, (LaneInt)(params.previous_height - 1));
 #endif
 #if REACTIVE
     trust *= 1.0f - reactive_at(&params, reactive0, x, y);
     trust *= 1.0f - previous_reactive_at(&params, reactive1, nearest_x, nearest_y);
 #endif
 #if RESIDUAL
-    const float8 velocity_before = load_velocity_at(velocity1, params.velocity1, nearest_x, nearest_y);
-    lost |= non_finite_velocity(velocity_before);
-    const float4 residual_x = velocity.even * params.speed0_x - velocity_before.even * params.speed1_x;
-    const float4 residual_y = velocity.odd * params.speed0_y - velocity_before.odd * params.speed1_y;
+    const LaneFloat2 moved_before = load_velocities_at(velocity1, params.velocity1, nearest_x, nearest_y);
+    largest = max(largest, max(magnitude_bits(moved_before.x), magnitude_bits(moved_before.y)));
+    const LaneFloat residual_x = velocity.x * params.speed0_x - moved_before.x * params.speed1_x;
+    const LaneFloat residual_y = velocity.y * params.speed0_y - moved_before.y * params.speed1_y;
     trust /= 1.0f + residual_x * residual_x + residual_y * residual_y;
 #endif
-    const float4 visible = select((float4)(0.0f), trust, before.least <= limit);
-    found.trust = as_float4(select(as_int4(visible), (int4)(NAN_BITS), lost));
+    const LaneFloat visible = select(none, trust, before.least <= limit);
+    const LaneInt visible_bits = as_lane_int(visible);
+    LaneFloat found_trust = as_lane_float(select(visible_bits, (LaneInt)(NAN_BITS), largest >= NON_FINITE_BITS));
 
     // Find motion edges, and trust nothing that a nearer surface's edge has mixed in.
+    LaneFloat motion_edge = none;
 #if MOTION_EDGE
-    const float4 edge = motion_edges_at(&params, velocity0, x, y, velocity);
-    const float4 previous_edge = previous_motion_edges(&params, previous_reprojection, nearest_x, nearest_y);
-    const float4 kept = 1.0f - edge_rejection4(previous_edge);
-    found.trust *= select((float4)(1.0f), kept, before.most > limit);
-    found.motion_edge = select(edge, -previous_edge, previous_edge > edge);
-#else
-    found.motion_edge = (float4)(0.0f);
+    const LaneFloat edge = motion_edges_at(&params, velocity0, x, y, velocity);
+    const LaneFloat previous_edge = previous_motion_edges(&params, previous_reprojection, nearest_x, nearest_y);
+    const LaneFloat kept = 1.0f - edge_rejection(previous_edge);
+    found_trust *= select((LaneFloat)(1.0f), kept, before.most > limit);
+    motion_edge = select(edge, -previous_edge, previous_edge > edge);
 #endif
 #if OPEN_TRUST
-    const int4 has_edge = fabs(found.motion_edge) > LAYER_MOTION_MIN;  // -1, or 0
-    store_floats(open_trust + y * params.width + x, count, copysign(trust, as_float4(has_edge)));
+    const LaneFloat sign = select((LaneFloat)(1.0f), (LaneFloat)(-1.0f), fabs(motion_edge) > LAYER_MOTION_MIN);
+    store_floats(open_trust + y * params.width + x, count, copysign(trust, sign));
 #endif
-    store_reprojections(reprojection, texel_index(params.reprojection, x, y), count, found);
+    store_reprojections(reprojection + 4 * index, count, motion, found_trust, motion_edge);
   }
 }

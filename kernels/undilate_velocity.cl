@@ -86,22 +86,9 @@ static inline float load_dilated_depth(DEPTH_TEXELS texels, TexelLayout layout, 
   return most;
 }
 
-// Loads the velocities of the samples in the lanes, from x on, clamped to the edge.
-static inline LaneVelocities load_velocities(VELOCITY_TEXELS texels, TexelLayout layout, int x, int y, int width) {
-#if LANES == 8
-  const float8 left = load_velocity_block(texels, layout, x, y, width);
-  const float8 right = load_velocity_block(texels, layout, x + 4, y, width);
-  const LaneVelocities found = {(float8)(left.even, right.even), (float8)(left.odd, right.odd)};
-#else
-  const float2 velocity = load_velocity(texels, layout, clamp(x, 0, width - 1), y);
-  const LaneVelocities found = {velocity.x, velocity.y};
-#endif
-  return found;
-}
-
-// Stores those of columns before `end`.
+// Stores the velocities of columns before `end`.
 static inline void store_velocities(STORED_VELOCITY texels, TexelLayout layout, int x, int y, int end,
-                                    LaneVelocities v) {
+                                    LaneFloat2 v) {
 #if LANES == 8
   const float8 left = (float8)(v.x.s0, v.y.s0, v.x.s1, v.y.s1, v.x.s2, v.y.s2, v.x.s3, v.y.s3);
   const float8 right = (float8)(v.x.s4, v.y.s4, v.x.s5, v.y.s5, v.x.s6, v.y.s6, v.x.s7, v.y.s7);
@@ -112,15 +99,15 @@ static inline void store_velocities(STORED_VELOCITY texels, TexelLayout layout, 
 #endif
 }
 
-static inline LaneVelocities select_velocities(LaneVelocities otherwise, LaneVelocities velocity, LaneMask mask) {
-  const LaneVelocities taken = {select(otherwise.x, velocity.x, mask), select(otherwise.y, velocity.y, mask)};
+static inline LaneFloat2 select_velocities(LaneFloat2 otherwise, LaneFloat2 velocity, LaneMask mask) {
+  const LaneFloat2 taken = {select(otherwise.x, velocity.x, mask), select(otherwise.y, velocity.y, mask)};
   return taken;
 }
 
 // Samples of a row that look for a neighbour of their own depth, and the velocity of the closest so far.
 typedef struct Searches {
   LaneFloat depth, closest;
-  LaneVelocities velocity;
+  LaneFloat2 velocity;
 } Searches;
 
 // The neighbours in the columns from x on of row y, of these dilated depths.
@@ -130,7 +117,7 @@ static inline void look_at(Searches* found, const UndilateParams* params, VELOCI
   const LaneFloat apart = fabs(dilated - found->depth);
   const LaneMask is_closer = (apart < found->closest) & (column >= 0) & (column < params->frame.width);
   if (!any_lane(is_closer)) return;
-  const LaneVelocities velocity = load_velocities(velocities, params->dilated, x, y, params->frame.width);
+  const LaneFloat2 velocity = load_velocity_row(velocities, params->dilated, x, y, params->frame.width);
   found->closest = select(found->closest, apart, is_closer);
   found->velocity = select_velocities(found->velocity, velocity, is_closer);
 }
@@ -173,7 +160,7 @@ static inline int2 place_of_same(const UndilateParams* params, DEPTH_TEXELS dept
 // Takes the velocities that are `missing` from two to REACH samples away. Lanes that find none keep their velocity and
 // their mark.
 static inline void look_afar(const UndilateParams* params, VELOCITY_TEXELS velocities, DEPTH_TEXELS depths, int x,
-                             int y, LaneFloat depth, LaneVelocities* velocity, LaneMask* missing) {
+                             int y, LaneFloat depth, LaneFloat2* velocity, LaneMask* missing) {
   for (int i = 0; i < kLanes; ++i) {
     if (FIRST_LANE(*missing)) {
       const int2 place = place_of_same(params, depths, x + i, y, FIRST_LANE(depth));
@@ -191,11 +178,11 @@ static inline void look_afar(const UndilateParams* params, VELOCITY_TEXELS veloc
   }
 }
 
-static inline LaneVelocities camera_velocities(const UndilateParams* params, int x, int y, LaneFloat depth) {
+static inline LaneFloat2 camera_velocities(const UndilateParams* params, int x, int y, LaneFloat depth) {
   __private const CameraVelocity* camera = &params->frame.camera;
   const float ndc_y = (float)y * camera->step_y + camera->start_y;
-  const LaneVelocities moved = velocities_of(to_lane_float(x + LANE_NUMBERS), ndc_y, depth, camera);
-  const LaneVelocities drawn = {clamp(moved.x * params->to_drawn_x, -FINITE_HALF_MAX, FINITE_HALF_MAX),
+  const LaneFloat2 moved = velocities_of(to_lane_float(x + LANE_NUMBERS), ndc_y, depth, camera);
+  const LaneFloat2 drawn = {clamp(moved.x * params->to_drawn_x, -FINITE_HALF_MAX, FINITE_HALF_MAX),
                                 clamp(moved.y * params->to_drawn_y, -FINITE_HALF_MAX, FINITE_HALF_MAX)};
   return drawn;
 }
@@ -209,7 +196,7 @@ __kernel void undilate_velocity(const UndilateParams params, DEPTH_TEXELS depth,
 
   for (int x = item.first; x < item.end; x += item.step) {
     const int end = x + pixels_from(item, x);
-    LaneVelocities found = load_velocities(dilated, params.dilated, x, y, width);
+    LaneFloat2 found = load_velocity_row(dilated, params.dilated, x, y, width);
     const LaneInt columns = min(x + LANE_NUMBERS, (LaneInt)(width - 1));
     const LaneFloat own = load_depth_lanes(depth, frame.depth, columns, y);
     const DilatedDepths row = load_dilated_depths(depth, frame.depth, x, y, width, frame.height);

@@ -16,6 +16,10 @@ static inline int4 non_finite_lanes(float4 value) {
   return (as_int4(value) & 0x7fffffff) >= NON_FINITE_BITS;
 }
 
+static inline LaneInt magnitude_bits(LaneFloat value) {
+  return as_lane_int(value) & 0x7fffffff;
+}
+
 static inline bool any_non_finite4(float4 value) {
   return any(non_finite_lanes(value));
 }

@@ -142,6 +142,10 @@ static inline LaneFloat gather(__global const float* elements, LaneInt index) {
 #endif
 }
 
+typedef struct LaneFloat2 {
+  LaneFloat x, y;
+} LaneFloat2;
+
 typedef struct LaneFloat4 {
   LaneFloat x, y, z, w;
 } LaneFloat4;

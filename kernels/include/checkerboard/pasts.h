@@ -204,7 +204,7 @@ static inline VelocityBits velocity_on(Sides side, VelocitiesAround velocities) 
   return select_velocities(across, down, are_down(side));
 }
 
-typedef LaneVelocities Motion;  // in velocity's own units
+typedef LaneFloat2 Motion;  // in velocity's own units
 
 static inline Motion motion_of(VelocityBits bits) {
 #if SOURCE_STORAGE == BUFFER && VELOCITY_FORMAT == HALF
@@ -277,14 +277,6 @@ static inline int upper_row(const CheckerboardParams* params, Places places) {
 
 static inline int lower_row(const CheckerboardParams* params, Places places) {
   return clamp(FIRST_LANE(places.row.low) + 1, 0, params->previous_height - 1);
-}
-
-static inline LaneFloat load_depths_at(DEPTH_TEXELS depth, TexelLayout layout, LaneInt x, LaneInt y) {
-#if LANES == 8
-  return (LaneFloat)(load_depth_at(depth, layout, x.lo, y.lo), load_depth_at(depth, layout, x.hi, y.hi));
-#else
-  return load_depth(depth, layout, x, y);
-#endif
 }
 
 static inline LaneFloat mix_depths(LaneFloat low, LaneFloat high, LaneFloat fraction) {

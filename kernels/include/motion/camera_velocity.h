@@ -23,21 +23,16 @@ static inline float8 velocity_of(float4 column, float ndc_y, float4 depth, const
   return (float8)(seen_x.s0, seen_y.s0, seen_x.s1, seen_y.s1, seen_x.s2, seen_y.s2, seen_x.s3, seen_y.s3);
 }
 
-// Velocities, one a lane.
-typedef struct LaneVelocities {
-  LaneFloat x, y;
-} LaneVelocities;
-
 // The same of samples in lanes.
-static inline LaneVelocities velocities_of(LaneFloat column, float ndc_y, LaneFloat depth,
+static inline LaneFloat2 velocities_of(LaneFloat column, float ndc_y, LaneFloat depth,
                                            const CameraVelocity* camera) {
 #if LANES == 8
   const float8 left = velocity_of(column.lo, ndc_y, depth.lo, camera);
   const float8 right = velocity_of(column.hi, ndc_y, depth.hi, camera);
-  const LaneVelocities found = {(float8)(left.even, right.even), (float8)(left.odd, right.odd)};
+  const LaneFloat2 found = {(float8)(left.even, right.even), (float8)(left.odd, right.odd)};
 #else
   const float8 one = velocity_of((float4)(column), ndc_y, (float4)(depth), camera);
-  const LaneVelocities found = {one.s0, one.s1};
+  const LaneFloat2 found = {one.s0, one.s1};
 #endif
   return found;
 }

@@ -25,15 +25,13 @@
 // between the texels on both sides of one mixes two surfaces. Up to the first of two limits in temporal/constants.h it
 // has no effect, from the second on all of it.
 
-// smooth_step() returns 0 up to `low`, 1 from `high` on, and a smooth rise between; edge_rejection() how far a motion
-// edge has history rejected, 0 to 1.
-#define DEFINE_EDGE_REJECTION(type, smooth_step, edge_rejection)                    \
-  static inline type smooth_step(type x, float low, float high) {                   \
-    const type t = clamp((x - low) * (1.0f / (high - low)), 0.0f, 1.0f);            \
-    return t * t * (3.0f - 2.0f * t);                                               \
-  }                                                                                 \
-  static inline type edge_rejection(type motion_edge) {                             \
-    return smooth_step(motion_edge, REJECTED_EDGE_MIN, REJECTED_EDGE_MAX);          \
-  }
-DEFINE_EDGE_REJECTION(LaneFloat, smooth_step, edge_rejection)
-DEFINE_EDGE_REJECTION(float4, smooth_step4, edge_rejection4)
+// Returns 0 up to `low`, 1 from `high` on, and a smooth rise between.
+static inline LaneFloat smooth_step(LaneFloat x, float low, float high) {
+  const LaneFloat t = clamp((x - low) * (1.0f / (high - low)), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+// Returns how far a motion edge has history rejected, 0 to 1.
+static inline LaneFloat edge_rejection(LaneFloat motion_edge) {
+  return smooth_step(motion_edge, REJECTED_EDGE_MIN, REJECTED_EDGE_MAX);
+}

@@ -128,10 +128,6 @@ static inline LaneFloat luma_of(LaneTexels texels) {
   return 0.25f * (reds(texels) + blues(texels)) + 0.5f * greens(texels);
 }
 
-static inline LaneInt magnitude_bits(LaneFloat value) {
-  return as_lane_int(value) & 0x7fffffff;
-}
-
 // Returns which samples are valid.
 static inline LaneMask are_valid(LaneTexels samples) {
   return max(max(magnitude_bits(reds(samples)), magnitude_bits(greens(samples))),

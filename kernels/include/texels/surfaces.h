@@ -85,6 +85,15 @@ static inline float4 load_depth_block(DEPTH_TEXELS texels, TexelLayout layout, i
   return load_depth4(texels, layout, min(x + (int4)(0, 1, 2, 3), (int4)(width - 1)), y);
 }
 
+// The depths of neighbours of a row, one a lane, from x on, clamped to the edge.
+static inline LaneFloat load_depth_row(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width) {
+#if LANES == 8
+  return (LaneFloat)(load_depth_block(texels, layout, x, y, width), load_depth_block(texels, layout, x + 4, y, width));
+#else
+  return load_depth(texels, layout, min(x, width - 1), y);
+#endif
+}
+
 // The depths of a row's texels, one a lane.
 static inline LaneFloat load_depth_lanes(DEPTH_TEXELS texels, TexelLayout layout, LaneInt x, int y) {
 #if LANES == 8
@@ -144,6 +153,19 @@ static inline float8 load_velocity_block(VELOCITY_TEXELS texels, TexelLayout lay
   return load_velocity4(texels, layout, block_columns(x, width), y);
 }
 
+// The velocities of neighbours of a row, one a lane, from x on, which may be -1, clamped to the edge.
+static inline LaneFloat2 load_velocity_row(VELOCITY_TEXELS texels, TexelLayout layout, int x, int y, int width) {
+#if LANES == 8
+  const float8 left = load_velocity_block(texels, layout, x, y, width);
+  const float8 right = load_velocity_block(texels, layout, x + 4, y, width);
+  const LaneFloat2 row = {(LaneFloat)(left.even, right.even), (LaneFloat)(left.odd, right.odd)};
+#else
+  const float2 own = load_velocity(texels, layout, clamp(x, 0, width - 1), y);
+  const LaneFloat2 row = {own.x, own.y};
+#endif
+  return row;
+}
+
 // The velocities of four texels anywhere.
 static inline float8 load_velocity_at(VELOCITY_TEXELS texels, TexelLayout layout, int4 x, int4 y) {
 #if SOURCE_STORAGE == IMAGE
@@ -162,6 +184,19 @@ static inline float8 load_velocity_at(VELOCITY_TEXELS texels, TexelLayout layout
 #endif
 }
 
+// The velocities of texels anywhere, one a lane.
+static inline LaneFloat2 load_velocities_at(VELOCITY_TEXELS texels, TexelLayout layout, LaneInt x, LaneInt y) {
+#if LANES == 8
+  const float8 left = load_velocity_at(texels, layout, x.lo, y.lo);
+  const float8 right = load_velocity_at(texels, layout, x.hi, y.hi);
+  const LaneFloat2 found = {(LaneFloat)(left.even, right.even), (LaneFloat)(left.odd, right.odd)};
+#else
+  const float2 own = load_velocity(texels, layout, x, y);
+  const LaneFloat2 found = {own.x, own.y};
+#endif
+  return found;
+}
+
 // The depths of four texels anywhere.
 static inline float4 load_depth_at(DEPTH_TEXELS texels, TexelLayout layout, int4 x, int4 y) {
 #if SOURCE_STORAGE == IMAGE
@@ -173,61 +208,87 @@ static inline float4 load_depth_at(DEPTH_TEXELS texels, TexelLayout layout, int4
 #endif
 }
 
-// The smallest and the largest depths of four 2x2 blocks.
-typedef struct DepthRange {
-  float4 least, most;
-} DepthRange;
-
-static inline DepthRange range_of_rows(float4 upper_left, float4 upper_right, float4 lower_left, float4 lower_right) {
-  const DepthRange range = {fmin(fmin(upper_left, upper_right), fmin(lower_left, lower_right)),
-                            fmax(fmax(upper_left, upper_right), fmax(lower_left, lower_right))};
-  return range;
-}
-
-// Returns the ranges of depth of the blocks that begin at (x, y), in a viewport of two texels or more on both sides. A
-// NaN does not count.
-static inline DepthRange depth_ranges(DEPTH_TEXELS texels, TexelLayout layout, int4 x, int4 y, int width) {
-#if SOURCE_STORAGE == BUFFER
-  // Where surfaces are wider than a block and nothing scales the four lie side by side. One lane asks for one of them.
-  const long2 apart = as_long2((x - (x.s0 + (int4)(0, 1, 2, 3))) | (y - y.s0));
-  if (LANES == 8 && (apart.x | apart.y) == 0 && x.s0 + 4 < width) {
-    __global const float* upper = texels + texel_index(layout, x.s0, y.s0);
-    __global const float* lower = upper + layout.pitch;
-    return range_of_rows(vload4(0, upper), vload4(0, upper + 1), vload4(0, lower), vload4(0, lower + 1));
-  }
-  const int4 upper = layout.offset + y * layout.pitch + x;
-  const int4 lower = upper + layout.pitch;
-  const float2 u0 = vload2(0, texels + upper.s0), u1 = vload2(0, texels + upper.s1);
-  const float2 u2 = vload2(0, texels + upper.s2), u3 = vload2(0, texels + upper.s3);
-  const float2 l0 = vload2(0, texels + lower.s0), l1 = vload2(0, texels + lower.s1);
-  const float2 l2 = vload2(0, texels + lower.s2), l3 = vload2(0, texels + lower.s3);
-  return range_of_rows((float4)(u0.x, u1.x, u2.x, u3.x), (float4)(u0.y, u1.y, u2.y, u3.y),
-                       (float4)(l0.x, l1.x, l2.x, l3.x), (float4)(l0.y, l1.y, l2.y, l3.y));
+// The same, one a lane.
+static inline LaneFloat load_depths_at(DEPTH_TEXELS texels, TexelLayout layout, LaneInt x, LaneInt y) {
+#if LANES == 8
+  return (LaneFloat)(load_depth_at(texels, layout, x.lo, y.lo), load_depth_at(texels, layout, x.hi, y.hi));
 #else
-  return range_of_rows(load_depth_at(texels, layout, x, y), load_depth_at(texels, layout, x + 1, y),
-                       load_depth_at(texels, layout, x, y + 1), load_depth_at(texels, layout, x + 1, y + 1));
+  return load_depth(texels, layout, x, y);
 #endif
 }
 
-// The reactive values of four texels anywhere.
-static inline float4 load_reactive_at(REACTIVE_TEXELS texels, TexelLayout layout, int4 x, int4 y) {
+// The smallest and the largest depths of 2x2 blocks.
+typedef struct DepthRanges {
+  LaneFloat least, most;
+} DepthRanges;
+
+// A NaN does not count.
+static inline DepthRanges ranges_of_rows(LaneFloat upper_left, LaneFloat upper_right, LaneFloat lower_left,
+                                         LaneFloat lower_right) {
+  const DepthRanges ranges = {fmin(fmin(upper_left, upper_right), fmin(lower_left, lower_right)),
+                              fmax(fmax(upper_left, upper_right), fmax(lower_left, lower_right))};
+  return ranges;
+}
+
+#if LANES == 8 && SOURCE_STORAGE == BUFFER
+// The depths of eight texels and of their right neighbours, in turns.
+static inline float16 load_depth_pairs(DEPTH_TEXELS texels, LaneInt index) {
+  return (float16)(vload2(0, texels + index.s0), vload2(0, texels + index.s1), vload2(0, texels + index.s2),
+                   vload2(0, texels + index.s3), vload2(0, texels + index.s4), vload2(0, texels + index.s5),
+                   vload2(0, texels + index.s6), vload2(0, texels + index.s7));
+}
+#endif
+
+// Returns the ranges of depth of the blocks that begin at (x, y), in a viewport of two texels or more on both sides.
+static inline DepthRanges depth_ranges(DEPTH_TEXELS texels, TexelLayout layout, LaneInt x, LaneInt y, int width) {
 #if SOURCE_STORAGE == IMAGE
-  return (float4)(read_imagef(texels, (int2)(x.s0, y.s0)).x, read_imagef(texels, (int2)(x.s1, y.s1)).x,
-                  read_imagef(texels, (int2)(x.s2, y.s2)).x, read_imagef(texels, (int2)(x.s3, y.s3)).x);
+  return ranges_of_rows(load_depths_at(texels, layout, x, y), load_depths_at(texels, layout, x + 1, y),
+                        load_depths_at(texels, layout, x, y + 1), load_depths_at(texels, layout, x + 1, y + 1));
+#elif LANES == 8
+  const LaneInt index = layout.offset + y * layout.pitch + x;
+  // Where surfaces are wider than a block and nothing scales they lie side by side.
+  if (!any_lane((x - (x.s0 + LANE_NUMBERS)) | (y - y.s0)) && x.s0 + kLanes < width) {
+    __global const float* upper = texels + index.s0;
+    __global const float* lower = upper + layout.pitch;
+    return ranges_of_rows(vload8(0, upper), vload8(0, upper + 1), vload8(0, lower), vload8(0, lower + 1));
+  }
+  const float16 upper = load_depth_pairs(texels, index), lower = load_depth_pairs(texels, index + layout.pitch);
+  return ranges_of_rows(upper.even, upper.odd, lower.even, lower.odd);
 #else
-  const int4 index = layout.offset + y * layout.pitch + x;
-  const float4 codes = convert_float4((int4)(texels[index.s0], texels[index.s1], texels[index.s2], texels[index.s3]));
+  const int index = texel_index(layout, x, y);
+  const float2 upper = vload2(0, texels + index), lower = vload2(0, texels + index + layout.pitch);
+  return ranges_of_rows(upper.x, upper.y, lower.x, lower.y);
+#endif
+}
+
+// The reactive values of texels anywhere, one a lane.
+static inline LaneFloat load_reactives_at(REACTIVE_TEXELS texels, TexelLayout layout, LaneInt x, LaneInt y) {
+#if LANES == 1
+  return load_reactive(texels, layout, x, y);
+#elif SOURCE_STORAGE == IMAGE
+  LaneFloat values = (LaneFloat)(0.0f);
+  for (int i = 0; i < kLanes; ++i) {
+    FIRST_LANE(values) = load_reactive(texels, layout, FIRST_LANE(x), FIRST_LANE(y));
+    values = NEXT_LANES(values);
+    x = NEXT_LANES(x);
+    y = NEXT_LANES(y);
+  }
+  return values;
+#else
+  const LaneInt at = layout.offset + y * layout.pitch + x;
+  const LaneFloat codes = convert_float8((uchar8)(texels[at.s0], texels[at.s1], texels[at.s2], texels[at.s3],
+                                                  texels[at.s4], texels[at.s5], texels[at.s6], texels[at.s7]));
   return FRACTION_OF_CODE(codes);
 #endif
 }
 
-// The reactive values of four neighbours of a row, from x on, which may be -1.
-static inline float4 load_reactive_block(REACTIVE_TEXELS texels, TexelLayout layout, int x, int y, int width) {
-#if SOURCE_STORAGE == BUFFER
-  if (x >= 0 && x + 3 < width) {
-    const float4 codes = convert_float4(vload4(0, texels + texel_index(layout, x, y)));
+// The reactive values of neighbours of a row, one a lane, from x on, which may be -1, clamped to the edge.
+static inline LaneFloat load_reactive_row(REACTIVE_TEXELS texels, TexelLayout layout, int x, int y, int width) {
+#if SOURCE_STORAGE == BUFFER && LANES == 8
+  if (x >= 0 && x + kLanes <= width) {
+    const LaneFloat codes = convert_float8(vload8(0, texels + texel_index(layout, x, y)));
     return FRACTION_OF_CODE(codes);
   }
 #endif
-  return load_reactive4(texels, layout, block_columns(x, width), y);
+  return load_reactive_lanes(texels, layout, clamp(x + LANE_NUMBERS, (LaneInt)(0), (LaneInt)(width - 1)), y);
 }
