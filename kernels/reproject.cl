@@ -146,7 +146,7 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
     const LaneFloat none = (LaneFloat)(0.0f);
     LaneInt largest = max(magnitude_bits(depth), max(magnitude_bits(input.x), magnitude_bits(input.y)));
     const LaneFloat2 velocity = {select(input.x, none, largest >= NON_FINITE_BITS),
-                                     select(input.y, none, largest >= NON_FINITE_BITS)};
+                                 select(input.y, none, largest >= NON_FINITE_BITS)};
 
     // Reproject.
     const LaneFloat2 motion = {clamp(velocity.x * params.motion_x, -FINITE_HALF_MAX, FINITE_HALF_MAX),
@@ -184,7 +184,7 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
     // Find motion edges, and trust nothing that a nearer surface's edge has mixed in.
     LaneFloat motion_edge = none;
 #if MOTION_EDGE
-    const LaneFloat edge = motion_edges_at(&params, velocity0, x, y, velocity);
+    const LaneFloat edge = motion_edges_at(&params, velocity0, x, y, input);
     const LaneFloat previous_edge = previous_motion_edges(&params, previous_reprojection, nearest_x, nearest_y);
     const LaneFloat kept = 1.0f - edge_rejection(previous_edge);
     found_trust *= select((LaneFloat)(1.0f), kept, before.most > limit);

@@ -87,8 +87,7 @@ static inline float load_dilated_depth(DEPTH_TEXELS texels, TexelLayout layout, 
 }
 
 // Stores the velocities of columns before `end`.
-static inline void store_velocities(STORED_VELOCITY texels, TexelLayout layout, int x, int y, int end,
-                                    LaneFloat2 v) {
+static inline void store_velocities(STORED_VELOCITY texels, TexelLayout layout, int x, int y, int end, LaneFloat2 v) {
 #if LANES == 8
   const float8 left = (float8)(v.x.s0, v.y.s0, v.x.s1, v.y.s1, v.x.s2, v.y.s2, v.x.s3, v.y.s3);
   const float8 right = (float8)(v.x.s4, v.y.s4, v.x.s5, v.y.s5, v.x.s6, v.y.s6, v.x.s7, v.y.s7);
@@ -183,7 +182,7 @@ static inline LaneFloat2 camera_velocities(const UndilateParams* params, int x, 
   const float ndc_y = (float)y * camera->step_y + camera->start_y;
   const LaneFloat2 moved = velocities_of(to_lane_float(x + LANE_NUMBERS), ndc_y, depth, camera);
   const LaneFloat2 drawn = {clamp(moved.x * params->to_drawn_x, -FINITE_HALF_MAX, FINITE_HALF_MAX),
-                                clamp(moved.y * params->to_drawn_y, -FINITE_HALF_MAX, FINITE_HALF_MAX)};
+                             clamp(moved.y * params->to_drawn_y, -FINITE_HALF_MAX, FINITE_HALF_MAX)};
   return drawn;
 }
 

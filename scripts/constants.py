@@ -56,9 +56,9 @@ RULES = {
         (LIGHT, "const float by_cut = is_widespread && !relit ?", "const float by_cut = false && is_widespread && !relit ?")],
     "judging of cells": [(LIGHT, "if (!is_local && any(asked)) {", "if (false) {")],
     "… that change by more than they flicker": [
-        (LIGHT, "> max(JUDGED_CHANGE_MIN, FLICKER_RATIO_MIN * cells.flicker);", "> JUDGED_CHANGE_MIN;")],
+        (LIGHT, "(changed > FLICKER_RATIO_MIN * cells.flicker) &", "(changed > 0.0f) &")],
     "… that change at all": [
-        (LIGHT, "> max(JUDGED_CHANGE_MIN, FLICKER_RATIO_MIN * cells.flicker);", "> FLICKER_RATIO_MIN * cells.flicker;")],
+        (LIGHT, "& (max(changed, fabs(cells.drift)) > JUDGED_CHANGE_MIN);", ";")],
     "rigid tiles wait for a second frame": [
         (LIGHT, "const bool waits = way.is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
          "const bool waits = false;")],

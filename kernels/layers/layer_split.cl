@@ -8,7 +8,8 @@
 //   params            in      viewports, layouts, scales
 //   velocity          in      RG16F or RG32F, viewport
 //   depth             in      R32F, viewport
-//   open_trust        in/out  of each sample: trust without a comparison of depths, from reproject
+//   open_trust        in/out  of each sample: trust without a comparison of depths, as reproject signs it; lowered
+//                             ones have no sign
 //   previous_keys     in      of the previous frame's grid of records
 //   keys              in      of this frame's grid of records
 //   previous_records  in      LayerRecord of each cell of the previous grid that has one

@@ -13,7 +13,7 @@
 //   colour             in   RGBA16F or RGBA32F, viewport, linear, premultiplied
 //   reprojection       in   Reprojection of each sample, of split ones the far layer's
 //   depth, depth1      in   R32F, viewports of both frames
-//   open_trust         in   of each sample
+//   open_trust         in   of each sample; its sign does not matter
 //   splits             in   LayerSplit of each split sample
 //   history            in   the far layer of the previous frame
 //   alpha              in   ALPHA 1: its alpha

@@ -9,8 +9,8 @@
 //   rejection  of each cell the larger of two, clamped to [0, 1]:
 //     judged     by a small network, from the samples of the cell and of the cells and tiles around, now and of late:
 //                how far they differ from history, which way, and by how much more than neighbours do, less what the
-//                broad gain explains. 0 where another gain is given, and where the cell hardly changes, or by less than
-//                it flickers.
+//                broad gain explains. 0 where another gain is given, and where the cell hardly changes, or by no more
+//                than it flickers.
 //                In a rigid tile without a recent confirmation around it, this waits for a second frame that says the
 //                same: each place of the jitter can look like a change of its own
 //     by cut     over the whole picture history predicts worse than the neighbours: it is another picture
@@ -350,7 +350,9 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   const float by_cut = is_widespread && !relit ? rejection_by_cut(total) : 0.0f;
   const bool waits = way.is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;
   tile.confirmation = CONFIRMATION_MEMORY * before.confirmation;
-  const int4 asked = fabs(cells.mean_brightening) > max(JUDGED_CHANGE_MIN, FLICKER_RATIO_MIN * cells.flicker);
+  const float4 changed = fabs(cells.mean_brightening);
+  const int4 asked =
+      (changed > FLICKER_RATIO_MIN * cells.flicker) & (max(changed, fabs(cells.drift)) > JUDGED_CHANGE_MIN);
   float4 judged = (float4)(0.0f);
   if (!is_local && any(asked)) {
     const CellsAround grid = cells_around(evidence, tiles_x, tiles_y, x, y, explained);

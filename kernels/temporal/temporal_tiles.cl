@@ -81,8 +81,8 @@ static inline float mean_depth(const TemporalTileParams* params, DEPTH_TEXELS de
   float sum = 0.0f;
   for (int y = samples.first.y; y <= samples.last.y; ++y) {
     for (int x = samples.first.x; x <= samples.last.x; ++x) {
-      const bool has_two = is_split_at(params, in->reprojection, x, y);
-      sum += has_two ? in->splits[y * params->frame.width + x].far_depth : load_depth(depth, in->depth, x, y);
+      const LayerSplit split = in->splits[y * params->frame.width + x];
+      sum += is_split_at(params, in->reprojection, x, y) ? split.far_depth : load_depth(depth, in->depth, x, y);
     }
   }
   const int2 count = samples.last - samples.first + 1;
@@ -113,8 +113,8 @@ static inline LayerTile near_layer_of(const TemporalTileParams* params, const La
   float between = 0.0f, near_depth = 0.0f, count = 0.0f;
   for (int y = around.first.y; y <= around.last.y; ++y) {
     for (int x = around.first.x; x <= around.last.x; ++x) {
-      if (!is_split_at(params, in->reprojection, x, y)) continue;
       const LayerSplit split = in->splits[y * params->frame.width + x];
+      if (!is_split_at(params, in->reprojection, x, y)) continue;
       const float2 motion = (float2)(split.motion_x, split.motion_y);
       least = min(least, motion);
       most = max(most, motion);
@@ -224,7 +224,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
                              __global LayerTile* layers, __global int* listed, __global TileReprojection* tiles,
                              __global TileEvidence* evidence, __global TotalLight* total,
                              __global const Exposure* exposure) {
-  const int first = get_global_id(0), tile_y = get_global_id(1);
+  const int first = get_global_id(0) * kTilesAtOnce, tile_y = get_global_id(1);
   if (first >= params.tiles_x || tile_y >= params.tiles_y) return;
 
   const ExposedFrame frame = expose(params.frame, exposure);
@@ -233,7 +233,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
   PartLag lag = {-1, {0, 0, 0, 0}};
   const HistoryLayer known = {history, params.output_width, params.output_height};
   const Past past = {reprojection, known, previous_tiles, splits, change};
-  for (int left = first * kTilesAtOnce; left < params.tiles_x; left += (int)get_global_size(0) * kTilesAtOnce) {
+  for (int left = first; left < params.tiles_x; left += (int)get_global_size(0) * kTilesAtOnce) {
     JudgedTile found[kTilesAtOnce];
     int2 rows = (int2)(0, -1);
     for (int side = 0; side < kTilesAtOnce; ++side) {
@@ -251,16 +251,16 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
 #endif
 #if LAYERS
       const LayerInputs in = {depth_layout, reprojection, splits, marks, previous_layers};
-      const LayerTile own =
-          layer_tile(&params, depth, &in, samples, range, (int2)(tile_x, tile_y), corner, previous_tiles, &tile, &hidden);
+      const LayerTile own = layer_tile(&params, depth, &in, samples, range, (int2)(tile_x, tile_y), corner,
+                                       previous_tiles, &tile, &hidden);
       layers[i] = own;
       if (own.is_layered) listed[atomic_inc(&total->layered)] = i;
       is_split = own.is_split;
 #endif
       tiles[i] = tile;
       rows = (int2)(samples.first.y, samples.last.y);
-      const JudgedTile judged = {(int2)(samples.first.x, samples.last.x), is_split, tile};
-      if (!hidden) found[side] = judged;
+      const JudgedTile judged = {hidden ? (int2)(0, -1) : (int2)(samples.first.x, samples.last.x), is_split, tile};
+      found[side] = judged;  // whole: rusticl 22.3 copies a struct wrong where only some do
     }
     TileEvidence said[kTilesAtOnce];
     UNROLL_ALWAYS(kTilesAtOnce)

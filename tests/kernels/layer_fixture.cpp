@@ -351,7 +351,7 @@ LayerStages::Resolved LayerStages::run_resolve(Rig& rig, const LayerStageInputs&
   const std::size_t texels = past.far.size();
   std::vector<float> trust;
   for (const double value : r.open_trust)
-    trust.push_back(static_cast<float>(value));
+    trust.push_back(static_cast<float>(trust.size() % 3 == 0 ? -value : value));  // the sign is not trust's
   const cl::Buffer open_trust = to_device(trust);
   const cl::Buffer splits = to_device(splits_of(r.splits));
   const Exposure& exposure = in.stage.exposure;

@@ -133,7 +133,7 @@ std::vector<Pixel> make_reprojection(const LayerFrames& in, const LayerSpec& spe
 
 // Returns open trusts, with a minus sign where there is a motion edge.
 std::vector<float> make_open_trust(const LayerFrames& in, const LayerSpec& spec) {
-  constexpr double kEdgeMin = .05;  // px
+  constexpr double kEdgeMin = static_cast<double>(.05f);  // px
   std::mt19937 random(spec.seed + 5);
   std::uniform_real_distribution<float> uniform(0, 1);
   std::vector<float> made;

@@ -266,7 +266,9 @@ void store_reprojections(Rig& rig, const StageSpec& spec, StageInputs& in,
   std::vector<reference::Reprojection>& moves = in.reference.reprojections;
   std::vector<Pixel> stored;
   for (std::size_t i = 0; i < moves.size(); ++i) {
-    if (!splits.empty() && splits[i].is_split()) moves[i].motion_edge = -0.;  // as layer_split has it
+    const bool is_split = !splits.empty() && splits[i].is_split();
+    if (is_split || moves[i].motion_edge == 0)
+      moves[i].motion_edge = is_split ? -0. : 0;  // as layer_split has it
     stored.push_back({moves[i].x, moves[i].y, moves[i].trust, moves[i].motion_edge});
   }
   in.reprojection =

@@ -267,6 +267,7 @@ TEST_P(TemporalTiles, WithoutASplitSampleAreThoseOfOneLayer) {
     Rig rig;
     StageInputs in = layered.inputs(rig, spec);
     std::fill(in.reference.splits.begin(), in.reference.splits.end(), reference::LayerSplit{});
+    testing::store_reprojections(rig, spec, in, {});
     std::fill(in.reference.split_marks.begin(), in.reference.split_marks.end(), 0);
     std::fill(in.reference.layers_before.begin(), in.reference.layers_before.end(), reference::LayerTile{});
     const auto made = layered.run_tiles(in);

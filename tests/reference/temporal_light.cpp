@@ -71,7 +71,7 @@ constexpr double kFlickerMemory = .9;             // each frame: about ten
 constexpr double kConfirmationMemory = .97;       // each frame
 constexpr double kRigidTileConfirmationMax = .3;  // below it a rigid tile waits for a second frame
 constexpr double kDriftMemory = .7;               // each frame
-constexpr double kJudgedChangeMin = .002;         // |mean|: less is no change
+constexpr double kJudgedChangeMin = .002;         // |mean| and |drift|: both at most this are no change
 constexpr double kFlickerRatioMin = 4;            // |mean| / flicker: less is no change
 constexpr double kCutRatioMin = 1.25;   // E / N of the whole picture from which on it may be another one
 constexpr double kCutRatioRange = .35;  // times N, over which rejection grows to 1
@@ -346,7 +346,8 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
     CellLightOf<Real>& cell = light.cells[n];
     const Real change = abs(cell.mean_brightening);
     Real judged = 0;
-    if (local == 1 && change > kJudgedChangeMin && change > kFlickerRatioMin * cell.flicker) {
+    const bool has_changed = max(change, abs(cell.drift)) > kJudgedChangeMin;
+    if (local == 1 && has_changed && change > kFlickerRatioMin * cell.flicker) {
       judged =
           clamp(judge_cell(in, 2 * x + c % 2, 2 * y + c / 2, sums, cell, before.cells[n], flicker, explained),
                 0, 1);

@@ -3,6 +3,8 @@
 // temporal_denoise, temporal_refine.
 #include <fmt/format.h>
 
+#include <cstddef>
+
 #include "layers/layer.h"
 #include "passes/frame_params.h"
 #include "passes/pass.h"
@@ -76,6 +78,11 @@ void plan_temporal_tiles(const PlanFacts& facts, PassList& list) {
 // temporal_light: where the light has changed, and where the picture has.
 
 namespace {
+
+// The kernel loads these together.
+static_assert(offsetof(TileEvidence, brightening) == 0 &&
+              offsetof(TileEvidence, lag) == 7 * sizeof(cl_float));
+static_assert(offsetof(TileLight, recent_outliers) == offsetof(TileLight, confirmation) + sizeof(cl_float));
 
 class TemporalLightPass : public Pass {
  public:

@@ -35,7 +35,7 @@ QUINCUNX_CHECK_SIZE(LayerSplit, 16);
 // A sample has two layers if the motion edge in its Reprojection is -0, which is never one.
 #define SPLIT_MOTION_EDGE_BITS ((int)0x80000000)
 
-static inline bool is_split(float motion_edge) {
+static inline bool marks_split(float motion_edge) {
   return as_int(motion_edge) == SPLIT_MOTION_EDGE_BITS;
 }
 #endif

@@ -26,7 +26,7 @@ typedef struct LayeredPixels {
   LaneFloat open_trust;
 } LayeredPixels;
 
-enum { kSamplesAhead = 8 };  // to prefetch of four-channel values; twice as many of others
+enum { kSamplesAhead = 8 };  // to prefetch of 16-byte values; twice as many of smaller ones
 
 // What is known of the samples beyond those of a tile's row is read soon: the next tile of the list is most often the
 // next one of the picture.
@@ -58,7 +58,7 @@ static inline LayeredPixels find_layers(DEPTH_TEXELS depth, TexelLayout layout, 
   pixels.motion_x = select(none, split.z, is_split);
   pixels.motion_y = select(none, split.w, is_split);
   pixels.between = 0.5f * (select(none, split.x, is_split) + pixels.far_depth);
-  pixels.open_trust = max(fabs(gather(open_trust + first, nearest->x)), none);  // NaN is none
+  pixels.open_trust = fabs(gather(open_trust + first, nearest->x));
   return pixels;
 }
 

@@ -24,8 +24,7 @@ static inline float8 velocity_of(float4 column, float ndc_y, float4 depth, const
 }
 
 // The same of samples in lanes.
-static inline LaneFloat2 velocities_of(LaneFloat column, float ndc_y, LaneFloat depth,
-                                           const CameraVelocity* camera) {
+static inline LaneFloat2 velocities_of(LaneFloat column, float ndc_y, LaneFloat depth, const CameraVelocity* camera) {
 #if LANES == 8
   const float8 left = velocity_of(column.lo, ndc_y, depth.lo, camera);
   const float8 right = velocity_of(column.hi, ndc_y, depth.hi, camera);

@@ -64,7 +64,7 @@
 // ---- temporal_light: judging cells; judge_weights.h has the network.
 #define JUDGE_ERROR_FLOOR 0.02f  // luma: added to the neighbours' error, in which changes are measured [S]
 #define JUDGE_INPUT_MAX 8.0f     // of each input's magnitude [S]
-#define JUDGED_CHANGE_MIN 0.002f // relative luma: of a cell that changes by less nothing is rejected [S]
+#define JUDGED_CHANGE_MIN 0.002f  // relative luma: of a cell whose change and drift are no more nothing is rejected [S]
 #define FLICKER_RATIO_MIN 4.0f   // change of a cell / its flicker: of less none is rejected; pan +.3 dB [S]
 #define CONFIRMATION_MEMORY 0.97f         // a frame [S]
 #define RIGID_TILE_CONFIRMATION_MAX 0.3f  // reached 40 frames after the last confirmed suspicion [S]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The evidence of a tile's samples about the history at their places. Eight lanes hold eight columns of a
-// row: the middle six are judged, and the outer two are only their neighbours. In one lane samples come one by one.
+// The evidence of tiles' samples about the history at their places. Eight lanes hold columns of two tiles side by side:
+// either all eight are judged, and the samples beside them are loaded apart, or the middle six, whose neighbours the
+// outer two are. In one lane samples come one by one.
 //
 // Option: LAYERS  0 (default) | 1: samples of a near layer do not judge
 #pragma once
@@ -108,7 +109,7 @@ static inline LaneMask find_in_history(const Past* past, const TemporalTileParam
 #if LAYERS
 // Whether sample (x, y) has two layers.
 static inline bool is_split_at(const TemporalTileParams* params, __global const float* reprojection, int x, int y) {
-  return is_split(reprojection[4 * texel_index(params->reprojection, x, y) + 3]);
+  return marks_split(reprojection[4 * texel_index(params->reprojection, x, y) + 3]);
 }
 
 // Returns which samples show the far layer, or the only one: history that is judged knows nothing of a near one.
@@ -117,9 +118,9 @@ static inline LaneMask are_of_far_layer(const Past* past, DEPTH_TEXELS depth, Te
   LaneFloat far = 0.0f;
   for (int lane = 0; lane < kLanes; ++lane) {
     const int x = FIRST_LANE(columns);
-    bool is_far = true;
-    if (is_split_at(params, past->reprojection, x, y))
-      is_far = load_depth(depth, layout, x, y) < between_of(past->splits[y * params->frame.width + x]);
+    const LayerSplit split = past->splits[y * params->frame.width + x];
+    const bool is_far = !is_split_at(params, past->reprojection, x, y) ||
+                        load_depth(depth, layout, x, y) < between_of(split);
     FIRST_LANE(far) = is_far ? 1.0f : 0.0f;
     far = NEXT_LANES(far);
     columns = NEXT_LANES(columns);
@@ -187,7 +188,7 @@ typedef struct Neighbours {
 } Neighbours;
 
 #if LANES == 8
-// The evidence of a tile's rows, those of upper and of lower cells.
+// The evidence of rows of tiles, those of upper and of lower cells.
 typedef struct RowsEvidence {
   LaneEvidence upper, lower;
   LaneFloat outliers;
@@ -338,10 +339,10 @@ static inline LaneMask are_between(LaneInt columns, int2 range) {
 
 // Adds what two tiles' samples in columns from `first` on say, as far as they lie in those of `left` and of `right`: in
 // kLanes of them if it loads the samples beside those, else in two less.
-static inline void judge_columns(TileEvidence* evidence, const JudgedTile* tiles, COLOUR_TEXELS colour, const ExposedFrame* frame,
-                                 DEPTH_TEXELS depth, TexelLayout depth_layout, const Past* past,
-                                 const TemporalTileParams* params, int2 rows, int2 left, int2 right, int first,
-                                 bool loads_beside) {
+static inline void judge_columns(TileEvidence* evidence, const JudgedTile* tiles, COLOUR_TEXELS colour,
+                                 const ExposedFrame* frame, DEPTH_TEXELS depth, TexelLayout depth_layout,
+                                 const Past* past, const TemporalTileParams* params, int2 rows, int2 left, int2 right,
+                                 int first, bool loads_beside) {
   const int margin = loads_beside ? 0 : 1;
   const int x = first - margin;
   const LaneInt all_columns = x + LANE_NUMBERS;
@@ -379,9 +380,9 @@ static inline void judge_columns(TileEvidence* evidence, const JudgedTile* tiles
 }
 
 // Adds what the samples of two tiles, in the same rows, say of history.
-static inline void judge_tiles(TileEvidence* evidence, const JudgedTile* tiles, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
-                               TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
-                               int2 rows) {
+static inline void judge_tiles(TileEvidence* evidence, const JudgedTile* tiles, COLOUR_TEXELS colour,
+                               const ExposedFrame* frame, DEPTH_TEXELS depth, TexelLayout depth_layout,
+                               const Past* past, const TemporalTileParams* params, int2 rows) {
   const int2 none = (int2)(0, -1);
   const int fewer = kLanes - 2;
   // Where samples are farther apart than tiles, both may have the same, and are judged one by one.
@@ -392,14 +393,15 @@ static inline void judge_tiles(TileEvidence* evidence, const JudgedTile* tiles, 
     const int first = left.x <= left.y ? left.x : right.x, last = max(left.y, right.y), count = last - first + 1;
     const bool loads_beside = params->parity < 0 && (count + kLanes - 1) / kLanes < (count + fewer - 1) / fewer;
     for (int x = first; x <= last; x += loads_beside ? kLanes : fewer)
-      judge_columns(evidence, tiles, colour, frame, depth, depth_layout, past, params, rows, left, right, x, loads_beside);
+      judge_columns(evidence, tiles, colour, frame, depth, depth_layout, past, params, rows, left, right, x,
+                    loads_beside);
   }
 }
 #else
 // Adds what the tile's samples in column x say.
-static inline void judge_column(TileEvidence* evidence, const JudgedTile* tile, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
-                                TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
-                                int2 rows, int x) {
+static inline void judge_column(TileEvidence* evidence, const JudgedTile* tile, COLOUR_TEXELS colour,
+                                const ExposedFrame* frame, DEPTH_TEXELS depth, TexelLayout depth_layout,
+                                const Past* past, const TemporalTileParams* params, int2 rows, int x) {
   const WayBack way = way_back(tile);
   const int aside = params->parity >= 0 ? 1 : 0;  // the shaded neighbours on a checkerboard are the diagonal ones
   const float place_x = (float)x * params->spacing_x + params->start_x;
@@ -444,11 +446,10 @@ static inline void judge_column(TileEvidence* evidence, const JudgedTile* tile, 
 }
 
 // Adds what the samples of a tile say of history.
-static inline void judge_tiles(TileEvidence* evidence, const JudgedTile* tile, COLOUR_TEXELS colour, const ExposedFrame* frame, DEPTH_TEXELS depth,
-                               TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
-                               int2 rows) {
+static inline void judge_tiles(TileEvidence* evidence, const JudgedTile* tile, COLOUR_TEXELS colour,
+                               const ExposedFrame* frame, DEPTH_TEXELS depth, TexelLayout depth_layout,
+                               const Past* past, const TemporalTileParams* params, int2 rows) {
   for (int x = tile->columns.x; x <= tile->columns.y; ++x)
     judge_column(evidence, tile, colour, frame, depth, depth_layout, past, params, rows, x);
 }
 #endif
-

@@ -81,16 +81,16 @@ static inline float16 four_times(float4 value) {
   return (float16)(value, value, value, value);
 }
 
-// The range of each field of Reprojection; lanes of `unknown` are not 0 where one is NaN.
+// The range of each field of Reprojection, and whether no trust is NaN.
 typedef struct ReprojectionRange {
   float4 least, most;
-  int4 unknown;
+  bool is_known;
 } ReprojectionRange;
 
 static inline ReprojectionRange range_of(__global const float* reprojection, TexelLayout layout, SampleRange samples) {
   const int2 first = samples.first, last = samples.last;
   float16 least = (float16)(65536.0f), most = (float16)(-65536.0f);  // beyond all that Reprojection holds
-  int16 unknown = (int16)(0);
+  float16 sum = (float16)(0.0f);
   const bool wide = last.x >= first.x + 3;
   for (int y = first.y; y <= last.y; ++y) {
     __global const float* row = reprojection + 4 * row_index(layout, y);
@@ -100,12 +100,12 @@ static inline ReprojectionRange range_of(__global const float* reprojection, Tex
       const float16 four = wide ? vload16(0, row + 4 * min(x, last.x - 3)) : four_times(vload4(x, row));
       least = min(least, four);
       most = max(most, four);
-      unknown |= four != four;
+      sum += four;
     }
   }
   const float8 least8 = min(least.lo, least.hi), most8 = max(most.lo, most.hi);
-  const int8 unknown8 = unknown.lo | unknown.hi;
-  const ReprojectionRange range = {min(least8.lo, least8.hi), max(most8.lo, most8.hi), unknown8.lo | unknown8.hi};
+  const float trusts = (sum.s2 + sum.s6) + (sum.sa + sum.se);
+  const ReprojectionRange range = {min(least8.lo, least8.hi), max(most8.lo, most8.hi), trusts == trusts};
   return range;
 }
 
@@ -118,7 +118,7 @@ static inline TileReprojection reproject_tile(const TemporalTileParams* params, 
   const float2 least = found.least.xy, most = found.most.xy;
   const float2 scale = (float2)(params->motion_x, params->motion_y);
   const float2 range = (most - least) * scale;
-  const bool known = found.unknown.z == 0 && found.least.z >= 0.0f;
+  const bool known = found.is_known && found.least.z >= 0.0f;
   if (!known || !(range.x <= RIGID_MOTION_RANGE_MAX && range.y <= RIGID_MOTION_RANGE_MAX)) return tile;
 
   const float2 motion = without_rounding(0.5f * (most + least) * scale);

@@ -52,7 +52,7 @@ typedef struct CellEvidence {
 
 // Evidence of a tile's samples about the history at their places. Sums over its judged samples; s and h are the lumas
 // of sample and history, n that of the mean of the four neighbours, and each difference is divided by 1 and both lumas:
-// brightness as the eye has it, not light.
+// brightness as the eye has it, not light. temporal_light loads the first eight fields at once.
 typedef struct TileEvidence {
   float brightening;      // s - h
   float light;            // h
@@ -89,6 +89,7 @@ typedef struct TileLight {
   float cut;           // how far the whole picture is another one, in [0, 1], or was of late: it fades over frames
   float new_cut;       // by how much it is that more than of late
   float persistence;   // how far a change of light persists over frames, in [-1, 1]: positive where it brightens
+  // These two stand side by side for temporal_light.
   float confirmation;  // 1 in a frame that confirms a suspicion of the previous one; it fades over frames
   float recent_outliers;  // 1 in a frame with outliers in it or beside it; it fades over frames
   // 0 or 1: outliers are held back, because no frame of late had any: they may be faults of one frame.
