@@ -225,6 +225,11 @@ static inline LaneTexels over(LaneTexels texels, LaneFloat by) {
   return quotients;
 }
 
+static inline LaneTexels add_texels(LaneTexels sum, LaneTexels texels) {
+  const LaneTexels more = {sum.left + texels.left, sum.right + texels.right};
+  return more;
+}
+
 static inline LaneTexels add_times(LaneTexels sum, LaneTexels texels, LaneFloat by) {
   const LaneTexels more = {sum.left + texels.left * OF_FOUR(by.lo),
                            sum.right + texels.right * OF_FOUR(by.hi)};
@@ -274,6 +279,7 @@ typedef float4 LaneTexels;
 #define with_last(texels, last) ((float4)((texels).xyz, last))
 #define times(texels, by) ((texels) * (by))
 #define over(texels, by) ((texels) / (by))
+#define add_texels(sum, texels) ((sum) + (texels))
 #define add_times(sum, texels, by) ((sum) + (texels) * (by))
 #define select_texels(otherwise, chosen, mask) ((mask) ? (chosen) : (otherwise))
 #define any_bits(texels) as_int4(texels)

@@ -16,9 +16,15 @@ static inline int8 streaks_of(float8 velocity, float scale_x, float scale_y) {
   return convert_int8(clamp(settled, (float)-kLongestStreak, (float)kLongestStreak));
 }
 
-// The depths of four texels anywhere; NaN and negative ones count as infinitely far.
-static inline float4 load_settled_depth_at(DEPTH_TEXELS texels, TexelLayout layout, int4 x, int4 y) {
-  const float4 depth = load_depth_at(texels, layout, x, y);
-  const int4 bits = as_int4(depth);
-  return as_float4(select((int4)(0), bits, (bits > 0) & (bits <= 0x7f800000)));
+// One axis of streaks in lanes.
+static inline LaneInt streak_lanes(LaneFloat velocity, float scale) {
+  const LaneFloat settled =
+      select(velocity * scale, (LaneFloat)(0.0f), magnitude_bits(velocity) >= NON_FINITE_BITS);
+  return to_lane_int(clamp(settled, (float)-kLongestStreak, (float)kLongestStreak));
+}
+
+// The depths of texels anywhere; NaN and negative ones count as infinitely far.
+static inline LaneFloat load_settled_depths_at(DEPTH_TEXELS texels, TexelLayout layout, LaneInt x, LaneInt y) {
+  const LaneInt bits = as_lane_int(load_depths_at(texels, layout, x, y));
+  return as_lane_float(select((LaneInt)(0), bits, (bits > 0) & (bits <= 0x7f800000)));
 }

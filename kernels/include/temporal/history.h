@@ -85,16 +85,6 @@ static inline LaneTexels load_history_lanes(HistoryLayer layer, int index) {
 #endif
 }
 
-#if LANES == 8
-// Four-channel halves at the lanes' indices.
-static inline LaneTexels gather_half_texels(__global const ulong* texels, LaneInt index) {
-  const LaneTexels gathered = {
-      load_half_bits((ulong4)(texels[index.s0], texels[index.s1], texels[index.s2], texels[index.s3])),
-      load_half_bits((ulong4)(texels[index.s4], texels[index.s5], texels[index.s6], texels[index.s7]))};
-  return gathered;
-}
-#endif
-
 static inline void push_history(HistoryLayer layer, LaneInt* index, LaneTexels* texels) {
   *texels = push_texel(*texels, load_history(layer, FIRST_LANE(*index)));
   *index = NEXT_LANES(*index);

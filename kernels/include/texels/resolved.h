@@ -103,6 +103,36 @@ static inline float16 load_half_bits(ulong4 bits) {
   return (float16)(vload_half8(0, (__private const half*)&lower), vload_half8(0, (__private const half*)&upper));
 }
 
+#if LANES == 8
+// Four-channel halves at the lanes' indices.
+static inline LaneTexels gather_half_texels(__global const ulong* texels, LaneInt index) {
+  const LaneTexels gathered = {
+      load_half_bits((ulong4)(texels[index.s0], texels[index.s1], texels[index.s2], texels[index.s3])),
+      load_half_bits((ulong4)(texels[index.s4], texels[index.s5], texels[index.s6], texels[index.s7]))};
+  return gathered;
+}
+#endif
+
+static inline void push_resolved(RESOLVED_TEXELS texels, LaneInt* index, LaneTexels* loaded) {
+#if SOURCE_FORMAT == HALF
+  *loaded = push_texel(*loaded, vload_half4(FIRST_LANE(*index), texels));
+#else
+  *loaded = push_texel(*loaded, vload4(FIRST_LANE(*index), texels));
+#endif
+  *index = NEXT_LANES(*index);
+}
+
+// The texels at the lanes' indices.
+static inline LaneTexels gather_resolved(RESOLVED_TEXELS texels, LaneInt index) {
+#if SOURCE_FORMAT == HALF && LANES == 8
+  return gather_half_texels((__global const ulong*)texels, index);
+#else
+  LaneTexels loaded = no_texels();
+  EACH_LANE(push_resolved(texels, &index, &loaded));
+  return loaded;
+#endif
+}
+
 // The texels (x, y) to (x + 3, y).
 static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
   const int index = texel_index(layout, x, y);
@@ -111,6 +141,17 @@ static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout,
 #else
   return vload16(0, texels + 4 * index);
 #endif
+}
+
+// Neighbours of a row, one a lane, from x on, clamped to the edge.
+static inline LaneTexels load_resolved_row(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y, int width) {
+#if LANES == 8
+  if (x + kLanes <= width) {
+    const LaneTexels row = {load_resolved4(texels, layout, x, y), load_resolved4(texels, layout, x + 4, y)};
+    return row;
+  }
+#endif
+  return gather_resolved(texels, texel_index(layout, 0, y) + min(x + LANE_NUMBERS, (LaneInt)(width - 1)));
 }
 
 // Rounds to the nearest.
