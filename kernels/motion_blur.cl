@@ -52,15 +52,15 @@ static inline Motion motion_of(LaneInt x, LaneInt y) {
   return motion;
 }
 
-// Surfaces seen at places now.
-typedef struct Surfaces {
+// Samples of the viewport, and the streaks of the surfaces that they show.
+typedef struct Samples {
+  LaneInt x, y;
   LaneInt streak_x, streak_y;
-  LaneFloat depth;
-} Surfaces;
+} Samples;
 
-static inline LaneMask moves_as(Surfaces surfaces, Motion motion) {
-  const LaneInt away_x = magnitude(surfaces.streak_x - motion.x);
-  const LaneInt away_y = magnitude(surfaces.streak_y - motion.y);
+static inline LaneMask moves_as(Samples samples, Motion motion) {
+  const LaneInt away_x = magnitude(samples.streak_x - motion.x);
+  const LaneInt away_y = magnitude(samples.streak_y - motion.y);
   return max(away_x, away_y) <= motion.tolerance;
 }
 
@@ -92,13 +92,17 @@ static inline LaneInt nearest_at(__global const AxisTap* axis, LaneInt at) {
 #endif
 }
 
-static inline Surfaces surfaces_at(const Frame* frame, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth, Places places) {
+// The samples seen at places now.
+static inline Samples samples_at(const Frame* frame, VELOCITY_TEXELS velocity, Places places) {
   const MotionParams* params = frame->params;
   const LaneInt x = nearest_at(frame->columns, places.x), y = nearest_at(frame->rows, places.y);
   const LaneFloat2 moves = load_velocities_at(velocity, params->velocity, x, y);
-  const Surfaces surfaces = {streak_lanes(moves.x, params->scale_x), streak_lanes(moves.y, params->scale_y),
-                             load_settled_depths_at(depth, params->depth, x, y)};
-  return surfaces;
+  const Samples samples = {x, y, streak_lanes(moves.x, params->scale_x), streak_lanes(moves.y, params->scale_y)};
+  return samples;
+}
+
+static inline LaneFloat depths_of(const Frame* frame, DEPTH_TEXELS depth, Samples samples) {
+  return load_settled_depths_at(depth, frame->params->depth, samples.x, samples.y);
 }
 
 static inline Places choose(Places otherwise, Places chosen, LaneMask where) {
@@ -119,13 +123,13 @@ typedef struct Pixels {
 static inline Pixels pixels_at(const Frame* frame, TileBlur blur, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth,
                                LaneInt x, int y) {
   const Places here = {x, (LaneInt)(y)};
-  const Surfaces seen = surfaces_at(frame, velocity, depth, here);
+  const Samples seen = samples_at(frame, velocity, here);
   Pixels pixels;
   pixels.x = x;
   pixels.y = y;
   pixels.own = motion_of(seen.streak_x, seen.streak_y);
   pixels.passing = motion_of((LaneInt)(blur.x), (LaneInt)(blur.y));
-  pixels.depth = seen.depth;
+  pixels.depth = depths_of(frame, depth, seen);
   pixels.passed = mask_not(moves_as(seen, pixels.passing));
   pixels.any_passed = any_lane(pixels.passed);
   // Pixels that move by less than half a pixel stay on their own.
@@ -140,28 +144,34 @@ static inline Places places_seen(const Frame* frame, VELOCITY_TEXELS velocity, D
   const MotionParams* params = frame->params;
   const Motion own = pixels->own, passing = pixels->passing;
   const Places here = {pixels->x, (LaneInt)(pixels->y)};
-  Places seen = here;
-  LaneFloat stayer_depth = pixels->depth;
-  LaneMask stays = mask_of(true);
+  Places staying = here, from = here;
+  Samples stayer, passer;
+  LaneMask stays = mask_of(true), passes = mask_of(false);
   if (pixels->any_moves) {
-    seen = places_along(params, pixels->x, pixels->y, own.x, own.y, fraction);
-    const Surfaces stayer = surfaces_at(frame, velocity, depth, seen);
-    stayer_depth = stayer.depth;
+    staying = places_along(params, pixels->x, pixels->y, own.x, own.y, fraction);
+    stayer = samples_at(frame, velocity, staying);
     stays = moves_as(stayer, own);
   }
-  LaneMask passes = mask_of(false);
   if (pixels->any_passed) {
-    const Places from = places_along(params, pixels->x, pixels->y, passing.x, passing.y, fraction);
-    const Surfaces passer = surfaces_at(frame, velocity, depth, from);
+    from = places_along(params, pixels->x, pixels->y, passing.x, passing.y, fraction);
+    passer = samples_at(frame, velocity, from);
     passes = pixels->passed & moves_as(passer, passing);
-    const LaneMask in_front = passer.depth > stayer_depth * NEARER;
+  }
+  // Most often all stay, and depths do not matter.
+  const LaneMask unseen = mask_not(passes | stays);
+  if (!any_lane(passes | unseen)) return staying;
+  LaneFloat stayer_depth = pixels->depth;
+  if (pixels->any_moves) stayer_depth = depths_of(frame, depth, stayer);
+  Places seen = staying;
+  if (any_lane(passes)) {
+    const LaneMask in_front = depths_of(frame, depth, passer) > stayer_depth * NEARER;
     seen = choose(seen, from, passes & (mask_not(stays) | in_front));
   }
   const LaneMask behind = stayer_depth > pixels->depth * NEARER;
-  const LaneMask hidden = mask_not(passes | stays) & behind;
+  const LaneMask hidden = unseen & behind;
   if (any_lane(hidden)) {
     const Places mirrored = places_along(params, pixels->x, pixels->y, -own.x, -own.y, fraction);
-    const Surfaces other = surfaces_at(frame, velocity, depth, mirrored);
+    const Samples other = samples_at(frame, velocity, mirrored);
     seen = choose(seen, choose(here, mirrored, moves_as(other, own)), hidden);
   }
   return seen;
