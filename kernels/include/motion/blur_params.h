@@ -51,7 +51,7 @@ typedef struct MotionParams {
   TexelLayout depth;
   TexelLayout output;
   int row_axis;          // index of the first row in the axis table
-  int columns_per_item;  // pixels that a work-item makes: whole tiles, or a multiple of kBlock within one
+  int columns_per_item;  // pixels that a work-item makes, at least
   int most_samples_log2;
   float scale_x, scale_y;  // from the velocity target's units to streaks
 } MotionParams;

@@ -143,7 +143,7 @@ typedef struct ReprojectParams {
   TexelLayout reactive1;
   TexelLayout reprojection;
   TexelLayout previous_reprojection;
-  int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
+  int columns_per_item;  // pixels that a work-item makes, at least
   // The texel coordinate (0 at the first sample, 1 at the next) in the previous frame of sample (i, j), if it stands
   // still: (i * step_x + start_x, j * step_y + start_y).
   float step_x, step_y, start_x, start_y;
