@@ -69,13 +69,14 @@ __kernel void motion_tiles(const MotionParams params, __global const AxisTap* ax
     for (int x = left; x <= right; x += 4) {
       // At the right edge the last texel stands in for those beyond.
       const int4 columns = min((int4)(x, x + 1, x + 2, x + 3), (int4)(right));
-      const int8 streaks =
-          streaks_of(load_velocity4(velocity, params.velocity, columns, y), params.scale_x, params.scale_y);
-      keep_longer(&best, streaks.even, streaks.odd);
-      least_x = min(least_x, streaks.even);
-      least_y = min(least_y, streaks.odd);
-      most_x = max(most_x, streaks.even);
-      most_y = max(most_y, streaks.odd);
+      const float8 moves = load_velocity4(velocity, params.velocity, columns, y);
+      const int4 streaks_x = streaks_of_four(moves.even, params.scale_x);
+      const int4 streaks_y = streaks_of_four(moves.odd, params.scale_y);
+      keep_longer(&best, streaks_x, streaks_y);
+      least_x = min(least_x, streaks_x);
+      least_y = min(least_y, streaks_y);
+      most_x = max(most_x, streaks_x);
+      most_y = max(most_y, streaks_y);
     }
   }
   Longest one = {best.length.xxxx, best.x.xxxx, best.y.xxxx};

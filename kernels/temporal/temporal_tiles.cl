@@ -234,11 +234,11 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
   const HistoryLayer known = {history, params.output_width, params.output_height};
   const Past past = {reprojection, known, previous_tiles, splits, change};
   for (int left = first; left < params.tiles_x; left += (int)get_global_size(0) * kTilesAtOnce) {
-    JudgedTile found[kTilesAtOnce];
+    JudgedTile judged[kTilesAtOnce];
     int2 rows = (int2)(0, -1);
     for (int side = 0; side < kTilesAtOnce; ++side) {
       const JudgedTile none = {(int2)(0, -1), false, {.is_rigid = 1, .is_trusted = 1}};
-      found[side] = none;
+      judged[side] = none;
       const int tile_x = left + side, i = tile_y * params.tiles_x + tile_x;
       if (tile_x >= params.tiles_x) continue;
       const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
@@ -259,19 +259,19 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
 #endif
       tiles[i] = tile;
       rows = (int2)(samples.first.y, samples.last.y);
-      const JudgedTile judged = {hidden ? (int2)(0, -1) : (int2)(samples.first.x, samples.last.x), is_split, tile};
-      found[side] = judged;  // whole: rusticl 22.3 copies a struct wrong where only some do
+      const JudgedTile whole = {hidden ? (int2)(0, -1) : (int2)(samples.first.x, samples.last.x), is_split, tile};
+      judged[side] = whole;  // rusticl 22.3 copies a struct wrong where only some items do
     }
-    TileEvidence said[kTilesAtOnce];
+    TileEvidence evidence_of[kTilesAtOnce];
     UNROLL_ALWAYS(kTilesAtOnce)
-    for (int side = 0; side < kTilesAtOnce; ++side) said[side] = no_evidence();
-    judge_tiles(said, found, colour, &frame, depth, depth_layout, &past, &params, rows);
+    for (int side = 0; side < kTilesAtOnce; ++side) evidence_of[side] = no_evidence();
+    judge_tiles(evidence_of, judged, colour, &frame, depth, depth_layout, &past, &params, rows);
     UNROLL_ALWAYS(kTilesAtOnce)  // an index would put the evidence in memory
     for (int side = 0; side < kTilesAtOnce; ++side) {
       if (left + side >= params.tiles_x) continue;
-      add_means(&sum, &params, said[side]);
-      add_lag(&lag, total, &params, said[side], left + side, tile_y);
-      evidence[tile_y * params.tiles_x + left + side] = said[side];
+      add_means(&sum, &params, evidence_of[side]);
+      add_lag(&lag, total, &params, evidence_of[side], left + side, tile_y);
+      evidence[tile_y * params.tiles_x + left + side] = evidence_of[side];
     }
   }
   flush_lag(total, lag);

@@ -7,21 +7,15 @@
 #include "motion/blur_params.h"
 #include "texels/surfaces.h"
 
-// Two streaks, x and y in turn for each of four texels, from velocities in the units of their target. NaN and Inf are
-//                         0.
-static inline int8 streaks_of(float8 velocity, float scale_x, float scale_y) {
-  const float8 scaled = velocity * (float8)(scale_x, scale_y, scale_x, scale_y, scale_x, scale_y, scale_x, scale_y);
-  const int8 bits = as_int8(velocity);
-  const float8 settled = as_float8(select(as_int8(scaled), (int8)(0), (bits & 0x7fffffff) >= NON_FINITE_BITS));
-  return convert_int8(clamp(settled, (float)-kLongestStreak, (float)kLongestStreak));
-}
-
-// One axis of streaks in lanes.
-static inline LaneInt streak_lanes(LaneFloat velocity, float scale) {
-  const LaneFloat settled =
-      select(velocity * scale, (LaneFloat)(0.0f), magnitude_bits(velocity) >= NON_FINITE_BITS);
-  return to_lane_int(clamp(settled, (float)-kLongestStreak, (float)kLongestStreak));
-}
+// One axis of streaks, from velocities in the units of their target. NaN and Inf are 0.
+#define DEFINE_STREAKS(name, floats, ints, as_ints, to_ints)                                            \
+  static inline ints name(floats velocity, float scale) {                                               \
+    const floats settled =                                                                              \
+        select(velocity * scale, (floats)(0.0f), (as_ints(velocity) & 0x7fffffff) >= NON_FINITE_BITS);  \
+    return to_ints(clamp(settled, (float)-kLongestStreak, (float)kLongestStreak));                      \
+  }
+DEFINE_STREAKS(streaks_of_four, float4, int4, as_int4, convert_int4)
+DEFINE_STREAKS(streak_lanes, LaneFloat, LaneInt, as_lane_int, to_lane_int)
 
 // The depths of texels anywhere; NaN and negative ones count as infinitely far.
 static inline LaneFloat load_settled_depths_at(DEPTH_TEXELS texels, TexelLayout layout, LaneInt x, LaneInt y) {

@@ -85,19 +85,12 @@ static inline LaneTexels load_history_lanes(HistoryLayer layer, int index) {
 #endif
 }
 
-static inline void push_history(HistoryLayer layer, LaneInt* index, LaneTexels* texels) {
-  *texels = push_texel(*texels, load_history(layer, FIRST_LANE(*index)));
-  *index = NEXT_LANES(*index);
-}
-
 // The texels at the lanes' indices.
 static inline LaneTexels gather_history(HistoryLayer layer, LaneInt index) {
-#if HISTORY_FORMAT == HALF && LANES == 8
-  return gather_half_texels((__global const ulong*)layer.texels, index);
+#if HISTORY_FORMAT == HALF
+  return gather_half_texels(layer.texels, index);
 #else
-  LaneTexels texels = no_texels();
-  EACH_LANE(push_history(layer, &index, &texels));
-  return texels;
+  return gather_float_texels(layer.texels, index);
 #endif
 }
 

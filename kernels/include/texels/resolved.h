@@ -103,35 +103,36 @@ static inline float16 load_half_bits(ulong4 bits) {
   return (float16)(vload_half8(0, (__private const half*)&lower), vload_half8(0, (__private const half*)&upper));
 }
 
+// Four-channel texels at the lanes' indices.
+static inline LaneTexels gather_half_texels(__global const half* texels, LaneInt index) {
 #if LANES == 8
-// Four-channel halves at the lanes' indices.
-static inline LaneTexels gather_half_texels(__global const ulong* texels, LaneInt index) {
+  __global const ulong* bits = (__global const ulong*)texels;
   const LaneTexels gathered = {
-      load_half_bits((ulong4)(texels[index.s0], texels[index.s1], texels[index.s2], texels[index.s3])),
-      load_half_bits((ulong4)(texels[index.s4], texels[index.s5], texels[index.s6], texels[index.s7]))};
+      load_half_bits((ulong4)(bits[index.s0], bits[index.s1], bits[index.s2], bits[index.s3])),
+      load_half_bits((ulong4)(bits[index.s4], bits[index.s5], bits[index.s6], bits[index.s7]))};
   return gathered;
-}
+#else
+  return vload_half4(index, texels);
 #endif
+}
 
-static inline void push_resolved(RESOLVED_TEXELS texels, LaneInt* index, LaneTexels* loaded) {
+static inline LaneTexels gather_float_texels(__global const float* texels, LaneInt index) {
+#if LANES == 8
+  const LaneTexels gathered = {(float16)(vload4(index.s0, texels), vload4(index.s1, texels), vload4(index.s2, texels),
+                                         vload4(index.s3, texels)),
+                               (float16)(vload4(index.s4, texels), vload4(index.s5, texels), vload4(index.s6, texels),
+                                         vload4(index.s7, texels))};
+  return gathered;
+#else
+  return vload4(index, texels);
+#endif
+}
+
 #if SOURCE_FORMAT == HALF
-  *loaded = push_texel(*loaded, vload_half4(FIRST_LANE(*index), texels));
+#define gather_resolved(texels, index) gather_half_texels(texels, index)
 #else
-  *loaded = push_texel(*loaded, vload4(FIRST_LANE(*index), texels));
+#define gather_resolved(texels, index) gather_float_texels(texels, index)
 #endif
-  *index = NEXT_LANES(*index);
-}
-
-// The texels at the lanes' indices.
-static inline LaneTexels gather_resolved(RESOLVED_TEXELS texels, LaneInt index) {
-#if SOURCE_FORMAT == HALF && LANES == 8
-  return gather_half_texels((__global const ulong*)texels, index);
-#else
-  LaneTexels loaded = no_texels();
-  EACH_LANE(push_resolved(texels, &index, &loaded));
-  return loaded;
-#endif
-}
 
 // The texels (x, y) to (x + 3, y).
 static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
